@@ -22,7 +22,7 @@ from assess.web.endpoints import build_application
 from assess.web.guard import Guard
 from assess.web.importing import find_free
 from assess.web.jobs import READING, Slots
-from assess.web.sessions import ENTRANCE, HOSTED, HostedKeys, Keys, Limits, LocalKeys, Session
+from assess.web.sessions import ENTRANCE, HOSTED, Keys, Limits, Session
 
 if TYPE_CHECKING:
     from assess.web.book import Book
@@ -170,25 +170,22 @@ class Server:
     def __init__(self, listening: socket.socket, place: Place, folder: Path, home: Path) -> None:
         self._listening, self._place = listening, place
         self.port = int(listening.getsockname()[1])
-        most = (HOSTED if place.is_hosted else Limits()).jobs
-        slots, reading_slots = Slots(most), Slots(most, READING)
-
-        def make_session(limits: Limits, home: Path | None = None) -> Session:
-            return Session(
-                secrets.token_urlsafe(32), Path(tempfile.mkdtemp(prefix="session-", dir=folder)), home, limits,
-                slots=slots, reading_slots=reading_slots, language=place.language,
-            )  # fmt: skip
-
+        limits = HOSTED if place.is_hosted else Limits()
+        slots, reading_slots = Slots(limits.jobs), Slots(limits.jobs, READING)
+        self._keys = Keys(place.user_header, self.port, lambda: Session(
+            secrets.token_urlsafe(32), Path(tempfile.mkdtemp(prefix="session-", dir=folder)),
+            None if place.is_hosted else home, limits, slots=slots, reading_slots=reading_slots,
+            language=place.language,
+        ), limits)  # fmt: skip
+        names = (LOOPBACK, "localhost", "[::1]")
+        hosts = [*(f"{name}:{self.port}" for name in names), *(names[:2] if self.port == HTTP else ())]
+        schemes = ["http"]
         if place.is_hosted:
-            self._keys: Keys = HostedKeys(place.user_header, self.port, lambda: make_session(HOSTED))
             hosts, schemes = list(place.allowed), ["http", "https"]
-        else:
-            self._keys, schemes = LocalKeys(make_session(Limits(), home), self.port), ["http"]
-            names = (LOOPBACK, "localhost", "[::1]")
-            hosts = [*(f"{name}:{self.port}" for name in names), *(names[:2] if self.port == HTTP else ())]
         self._keeper = Keeper(self._keys)
+        application = build_application(self._keeper.note_edit)
         config = uvicorn.Config(
-            Guard(build_application(self._keeper.note_edit), self._keys, hosts, schemes), access_log=False,
+            Guard(application, self._keys, hosts, schemes), access_log=False,
             log_config=None, log_level="critical", lifespan="off", ws="none", http="h11", loop="asyncio",
             server_header=False, date_header=False, proxy_headers=False, timeout_graceful_shutdown=GRACE,
             timeout_keep_alive=30,
@@ -202,7 +199,7 @@ class Server:
     def issue_address(self) -> str:
         """Return an address that opens the page once, in one browser; where a proxy is in front, its way in."""
         host = f"[{self._place.host}]" if ":" in self._place.host else self._place.host
-        ticket = f"{ENTRANCE}?t={self._keys.issue()}" if isinstance(self._keys, LocalKeys) else "/"
+        ticket = f"{ENTRANCE}?t={self._keys.issue()}" if not self._place.is_hosted else "/"
         return f"http://{host}:{self.port}{ticket}"
 
     def run(self, signals: Sequence[int], started: Callable[[], None]) -> Ending:

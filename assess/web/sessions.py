@@ -235,12 +235,18 @@ def _is_same(one: str, other: str) -> bool:
     return bool(other) and hmac.compare_digest(one.encode("utf-8", "replace"), other.encode())
 
 
-class LocalKeys:
-    """One session; whoever opens the address with a ticket first gets its cookie."""
+class Keys:
+    """The sessions, and who may come in.
 
-    def __init__(self, session: Session, port: int) -> None:
-        self.cookie = f"{COOKIE}-{port}"
-        self._session, self._ticket, self._lock = session, "", threading.Lock()
+    Without a `header` there is one session; whoever opens the address with a ticket first gets its cookie. Else every
+    user whom a proxy names in that header has a session, and the page gets its cookie at the entrance.
+    """
+
+    def __init__(self, header: str, port: int, make: Callable[[], Session], limits: Limits = HOSTED) -> None:
+        self.cookie, self._ticket = f"{COOKIE}-{port}", ""
+        self._header, self._make, self._limits = header, make, limits
+        self._sessions: dict[str, Session] = {} if header else {"": make()}
+        self._lock = threading.Lock()
 
     def issue(self) -> str:
         """Return a new ticket; an earlier one is void."""
@@ -248,41 +254,9 @@ class LocalKeys:
             self._ticket = secrets.token_urlsafe(32)
             return self._ticket
 
-    def find(self, visit: HTTPConnection) -> Session | None:
-        """Return the session where the cookie is its own."""
-        found = visit.cookies.get(self.cookie, "")
-        return self._session if _is_same(found, self._session.key) else None
-
-    def admit(self, visit: HTTPConnection) -> Session | None:
-        """Return the session where the ticket is the one that was issued, which is void from then on."""
-        if visit.scope["path"] != ENTRANCE:
-            return None
-        with self._lock:
-            if not _is_same(visit.query_params.get("t", ""), self._ticket):
-                return None
-            self._ticket = ""
-        return self._session
-
-    def sessions(self) -> Sequence[Session]:
-        """Return the one session."""
-        return (self._session,)
-
-    def expire(self, now: float) -> None:
-        """End nothing: the session is as long as the command."""
-
-
-class HostedKeys:
-    """A session for every user whom the proxy names in a header; the page gets its cookie at the entrance."""
-
-    def __init__(self, header: str, port: int, make: Callable[[], Session], limits: Limits = HOSTED) -> None:
-        self.cookie = f"{COOKIE}-{port}"
-        self._header, self._make, self._limits = header, make, limits
-        self._sessions: dict[str, Session] = {}
-        self._lock = threading.Lock()
-
     def _name(self, visit: HTTPConnection) -> str:
         """Return the user; blank where the header is missing, or there twice: then it is not the proxy's alone."""
-        values = visit.headers.getlist(self._header)
+        values = visit.headers.getlist(self._header) if self._header else []
         name = values[0].encode("latin-1").decode("utf-8", "replace").strip() if len(values) == 1 else ""
         return name if len(name) <= LONGEST_USER else ""
 
@@ -292,11 +266,15 @@ class HostedKeys:
         return session if session and _is_same(visit.cookies.get(self.cookie, ""), session.key) else None
 
     def admit(self, visit: HTTPConnection) -> Session | None:
-        """Return the session of a user who opens the page; a new one where there is room."""
-        user = self._name(visit)
-        if visit.scope["path"] != "/" or not user:
-            return None
+        """Return the session of a ticket, void from then on, or of a user who opens the page, new if there is room."""
+        user, path = self._name(visit), visit.scope["path"]
         with self._lock:
+            if not self._header:
+                if path != ENTRANCE or not _is_same(visit.query_params.get("t", ""), self._ticket):
+                    return None
+                self._ticket = ""
+            elif path != "/" or not user:
+                return None
             if user not in self._sessions:
                 if len(self._sessions) >= self._limits.sessions:
                     raise RequestError(fill("Too many users have a workbook open. Try again later."), TOO_MANY)
@@ -315,6 +293,3 @@ class HostedKeys:
             ended = [self._sessions.pop(user) for user in idle]
         for session in ended:
             session.close()
-
-
-Keys = LocalKeys | HostedKeys

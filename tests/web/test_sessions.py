@@ -7,7 +7,7 @@ import pytest
 from starlette.requests import HTTPConnection
 
 from assess.web.request_errors import RequestError
-from assess.web.sessions import HostedKeys, Limits, Session
+from assess.web.sessions import Keys, Limits, Session
 from tests.web.serving import Client, wait_for_job
 from tests.workbooks import write
 
@@ -93,7 +93,7 @@ def _visit(user, cookie=""):
 
 def test_a_name_that_comes_twice_is_not_the_proxys(make):
     """A proxy that adds its header to the one of the browser lets that one name anybody."""
-    keys = HostedKeys("X-User", 80, make)
+    keys = Keys("X-User", 80, make)
     assert keys.admit(_visit(("ann", "ben"))) is None
     session = keys.admit(_visit("ann"))
     assert keys.find(_visit("ann", session.key)) is session
@@ -101,7 +101,7 @@ def test_a_name_that_comes_twice_is_not_the_proxys(make):
 
 
 def test_sessions_are_limited_and_end_when_nobody_asks(make):
-    keys = HostedKeys("X-User", 80, make, Limits(sessions=2, idle=100.0))
+    keys = Keys("X-User", 80, make, Limits(sessions=2, idle=100.0))
     ann, ben = (keys.admit(_visit(user)) for user in ("ann", "ben"))
     with pytest.raises(RequestError, match="Too many users") as found:
         keys.admit(_visit("cat"))
