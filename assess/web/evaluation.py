@@ -25,11 +25,10 @@ BY_FORMULAS = Settings(verify="none")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Evaluation:
-    """What is known of the pieces of a workbook by the formulas.
+    """What is known of the pieces of a workbook by the formulas: the assessment of the floors whose motion is known.
 
-    * `assessment`: that of the floors whose motion is known; None where there are none.
-    * `unserved`: the floors whose motion is not known, as names are compared.
-    * `problems`: why it is not, and what is to be said of the motions and the walls; not those of the reading.
+    `unserved` are the other floors, as names are compared; `problems` tell why, and of motions and walls, but are not
+    those of the reading.
     """
 
     assessment: Assessment | None

@@ -45,9 +45,6 @@ STROKE = "#757575"
 HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="{wide}" height="{tall:.2f}" viewBox="0 0 {wide} {tall:.2f}">'
 
 
-# ---------------------------------------------------------------- the picture
-
-
 @dataclass(frozen=True, slots=True)
 class FloorPicture:
     """The picture of a floor, of lines or grey; until it is placed some of the numbers are None.
@@ -77,25 +74,10 @@ class FloorPicture:
         """Return it as the page takes it."""
         digest = hashlib.sha256(self.content).hexdigest()[:16]
         return {
-            "url": f"/api/picture?floor={quote(floor, safe='')}&v={digest}",
-            "left": self.left,
-            "bottom": self.bottom,
-            "width": self.width,
-            "height": None if self.width is None else self.width * self.aspect,
-            "turn": self.turn,
-            "placed": bool(self.corners),
-            "aspect": self.aspect,
-        }
-
-    def draw(self) -> tuple[bytes, str]:
-        """Return what the browser shows of it, and its media type: of lines an SVG with one path."""
-        if not self.is_lines:
-            return self.content, "image/jpeg"
-        tall = WIDE * self.aspect
-        lines = (line * (WIDE, -WIDE) + (0, tall) for line in unpack(self.content))
-        path = "".join("M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in line.tolist()) for line in lines)
-        drawn = f'<path d="{path}" fill="none" stroke="{STROKE}" stroke-width="1"/></svg>'
-        return f"{HEAD.format(wide=WIDE, tall=tall)}{drawn}".encode(), "image/svg+xml"
+            "url": f"/api/picture?floor={quote(floor, safe='')}&v={digest}", "placed": bool(self.corners),
+            "height": None if self.width is None else self.width * self.aspect, "aspect": self.aspect,
+            **{name: getattr(self, name) for name in ("left", "bottom", "width", "turn")},
+        }  # fmt: skip
 
 
 def _find_picture(snapshot: "Snapshot", row: Row | None) -> FloorPicture | None:
@@ -115,9 +97,6 @@ def _find_picture(snapshot: "Snapshot", row: Row | None) -> FloorPicture | None:
         drawing.content, drawing.is_lines, drawing.aspect, left, bottom, drawing.width if width is None else width,
         row.get("plan_turn") or 0.0,
     )  # fmt: skip
-
-
-# ---------------------------------------------------------------- the pieces
 
 
 def _name_piece(row: Row) -> dict[str, Any]:
@@ -143,18 +122,12 @@ def _place(
     if breadth is not None and height is not None:
         ahead, behind = fallen(at, angle, breadth, wide, height)
         falls = [ahead, behind] if away is None else [ahead if abs(angle_apart(away, angle)) < 90 else behind]
+    lengths = {"x": at[0], "y": at[1], "breadth": drawn, "width": wide, "height": height}
     described = {
-        **_name_piece(row),
-        "x": round(at[0], DECIMALS),
-        "y": round(at[1], DECIMALS),
-        "angle": angle,
-        "breadth": round(drawn, DECIMALS),
-        "width": round(wide, DECIMALS),
-        "height": None if height is None else round(height, DECIMALS),
-        "anchored": row.get("anchored") or "unknown",
-        "quantity": row.get("quantity") or 1,
-        "missing": [name for name in SIZES if sizes.get(name) is None],
-    }
+        **_name_piece(row), "angle": angle, "anchored": row.get("anchored") or "unknown",
+        **{name: None if one is None else round(one, DECIMALS) for name, one in lengths.items()},
+        "quantity": row.get("quantity") or 1, "missing": [name for name in SIZES if sizes.get(name) is None],
+    }  # fmt: skip
     return described, rectangle(at, angle, (-drawn / 2, drawn / 2), wide), falls
 
 
@@ -175,9 +148,6 @@ def _round_points(points: Iterable[Point] | Outline) -> list[list[float]]:
     return [[round(x, DECIMALS), round(y, DECIMALS)] for x, y in points]
 
 
-# ---------------------------------------------------------------- what the page asks for
-
-
 def describe_catalogue(snapshot: "Snapshot") -> dict[str, Any]:
     """Return the answer of `GET /api/catalogue`: the types of the workbook, with their sizes [m]."""
     names = ("type", *SIZES)
@@ -188,7 +158,15 @@ def find_picture(snapshot: "Snapshot", floor: str) -> tuple[bytes, str] | None:
     """Return the picture of a floor as `GET /api/picture` answers it, and its media type; None where there is none."""
     named = (one for one in list_floors(snapshot.tables) if key(one.get("floor")) == key(floor))
     picture = _find_picture(snapshot, next(named, None))
-    return None if picture is None else picture.draw()
+    if picture is None:
+        return None
+    if not picture.is_lines:
+        return picture.content, "image/jpeg"
+    tall = WIDE * picture.aspect
+    lines = (line * (WIDE, -WIDE) + (0, tall) for line in unpack(picture.content))
+    path = "".join("M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in line.tolist()) for line in lines)
+    drawn = f'<path d="{path}" fill="none" stroke="{STROKE}" stroke-width="1"/></svg>'
+    return f"{HEAD.format(wide=WIDE, tall=tall)}{drawn}".encode(), "image/svg+xml"
 
 
 def describe_plan(snapshot: "Snapshot", floor: str | None) -> dict[str, Any]:
@@ -239,9 +217,7 @@ def _draw(tables: Tables, inventory: Inventory, floor: str, picture: FloorPictur
         "unplaced": [_name_piece(row) for row in items if not _is_placed(row)],
         "places": [
             {
-                "row": row.number,
-                "place": row.get("place") or "",
-                "kind": row.get("kind") or "",
+                "row": row.number, "place": row.get("place") or "", "kind": row.get("kind") or "",
                 "outline": _round_points(row.get("outline")) if row.get("outline") else None,
                 **{side: None if row.get(side) is None else round(row.get(side), DECIMALS) for side in ("x", "y")},
             }
@@ -249,7 +225,7 @@ def _draw(tables: Tables, inventory: Inventory, floor: str, picture: FloorPictur
         ],
         "segments": segments,
         "walls": [[one, two] for ring in outlines for one, two in zip(ring, [*ring[1:], ring[0]], strict=True)],
-    }
+    }  # fmt: skip
 
 
 def _is_placed(row: Row) -> bool:
@@ -272,16 +248,12 @@ def _describe_segments(tables: Tables, inventory: Inventory, floor: str) -> Iter
             local = ((along[0], -half), (along[1], -half), (along[1], half), (along[0], half))
             cos, sin = (band.end[0] - x) / band.length, (band.end[1] - y) / band.length
             outline = _round_points(_move(local, (x, y), cos, sin))
+        names = {"route": "route", "segment": "segment", "from": "start", "to": "end"}
         yield {
-            "row": row.number,
-            "route": row.get("route") or "",
-            "segment": row.get("segment") or "",
+            "row": row.number, **{name: row.get(field) or "" for name, field in names.items()}, "outline": outline,
             "points": _round_points((end.get("x"), end.get("y")) for end in here) if len(here) == len(ends) else [],
             "width": row.get("clear_width") or row.get("required_width") or DEFAULT_WIDTH,
-            "from": row.get("start") or "",
-            "to": row.get("end") or "",
-            "outline": outline,
-        }
+        }  # fmt: skip
 
 
 def _move(local: Iterable[Point], to: Point, cos: float, sin: float) -> list[Point]:

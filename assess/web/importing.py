@@ -1,4 +1,4 @@
-"""A building model, a plan, a scan or a COBie file that becomes a new workbook: read aside, told as it goes, cancelled.
+"""A building model, a plan, a scan or a COBie file that becomes a new workbook, read in a thread of its own.
 
 What is read goes to a folder of its own, which is removed once it has been read, however that ended.
 """
@@ -148,19 +148,13 @@ class Import:
             now = self._latest
             fault = describe_fault(self._error)[1] if self._error is not None else {}
             return {
-                "id": self.id,
-                "state": self.state,
-                "name": self.name,
+                "id": self.id, "state": self.state, "name": self.name, "book": self.book,
                 "label": gettext(STAGES.get(now.stage or "reading", STAGES["reading"])),
                 "share": now.share if self.state == "running" else 1.0,
-                "seconds": time.monotonic() - self._started,
-                "message": fault.get("message", ""),
-                "fix": fault.get("fix", ""),
-                "problems": fault.get("problems", []),
+                "seconds": time.monotonic() - self._started, "message": "", "fix": "", "problems": [], **fault,
                 "found": _describe_taken(self._taken) if self._taken else None,
                 "workbook": name_workbook(self.name),
-                "book": self.book,
-            }
+            }  # fmt: skip
 
     def build(self, folder: Path, shaking: str) -> Made:
         """Return the new workbook, in the language in use, under names that the folder does not have yet.
@@ -193,10 +187,11 @@ def name_workbook(name: str) -> str:
 
 def find_free(name: str, folder: Path) -> str:
     """Return a name that no file of a folder has: the name itself, else with a number."""
-    return next(one for one in _number(PurePosixPath(name)) if not _is_there(folder / one))
+    return next(one for one in _number(name) if not _is_there(folder / one))
 
 
-def _number(path: PurePosixPath) -> Iterator[str]:
+def _number(name: str) -> Iterator[str]:
+    path = PurePosixPath(name)
     yield path.as_posix()
     yield from (path.with_name(f"{path.stem}-{n}{path.suffix}").as_posix() for n in count(2))
 
@@ -219,7 +214,7 @@ def _rename_files(found: "ImportedBuilding", folder: Path) -> "ImportedBuilding"
     names: dict[str, str] = {}
     for name, data in found.files.items():
         others = {one.casefold() for one in (*found.files, *names.values()) if one != name}
-        options = (one for one in _number(PurePosixPath(name)) if one.casefold() not in others)
+        options = (one for one in _number(name) if one.casefold() not in others)
         names[name] = next(one for one in options if is_free(folder / one, data))
     plans = ((row, row.get("plan", "")) for row in found.floors)
     floors = [{**row, "plan": names.get(plan, plan)} if plan else dict(row) for row, plan in plans]

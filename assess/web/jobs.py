@@ -10,9 +10,10 @@ import subprocess
 import sys
 import threading
 import zipfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from contextvars import copy_context
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -152,15 +153,12 @@ class Job:
         self._reader.join(timeout=2 * PATIENCE)
         shutil.rmtree(self._folder, ignore_errors=True)
 
-    # ------------------------------------------------------------ what the page is told
-
     def summarise(self) -> dict[str, Any]:
         """Return what the page shows of it wherever it is."""
         with self._lock:
-            stage = self._now["stage"]
-            label = gettext(STAGES.get(stage, stage.capitalize()))
+            now, label = self._now, gettext(STAGES.get(self._now["stage"], self._now["stage"].capitalize()))
             version = self._order["version"]
-            return {"id": self.id, "label": label, "version": version, **{k: self._now[k] for k in ("state", "share")}}
+            return {"id": self.id, "label": label, "version": version, "state": now["state"], "share": now["share"]}
 
     def describe(self, book: "Book | None") -> dict[str, Any]:
         """Return all that the page shows; `book` is the workbook as it is now.
@@ -175,21 +173,13 @@ class Job:
                 stale = now.keep(("stale", self.id), lambda: list_stale(self._inventory, now.inventory))
             if self._now["state"] == "done":
                 found = json.loads((self._folder / SUMMARY).read_text(encoding="utf-8"))
-            files: list[dict[str, Any]] = [
-                {"name": path.name, "bytes": path.stat().st_size} for path in self._list_files()
-            ]
-            if files:
-                files.append({"name": ARCHIVE, "bytes": sum(one["bytes"] for one in files)})
+            sizes = {path.name: path.stat().st_size for path in self._list_files()}
+            sizes |= {ARCHIVE: sum(sizes.values())} if sizes else {}
             return {
-                **self._now,
-                **self.summarise(),
-                "is_old": is_old,
-                "stale": stale,
-                "formats": order["formats"],
-                "settings": order["settings"],
-                "files": files,
-                **found,
-            }
+                **self._now, **self.summarise(), "is_old": is_old, "stale": stale, "formats": order["formats"],
+                "settings": order["settings"], **found,
+                "files": [{"name": name, "bytes": size} for name, size in sizes.items()],
+            }  # fmt: skip
 
     def _list_files(self) -> list[Path]:
         if self._now["state"] != "done":
@@ -214,8 +204,6 @@ class Job:
 _OWN_GROUP: int = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
 """Out of the reach of a Ctrl-C in the terminal on Windows; elsewhere the process gets a session of its own."""
 
-
-# ---------------------------------------------------------------- what it takes from the workbook
 
 FORMATS = tuple(name for name in FILES if name not in ("npz", "parquet"))
 """Files that the page offers; results.json is always written."""
@@ -281,21 +269,12 @@ def list_stale(before: Inventory, now: Inventory) -> list[int]:
 
     Among them are rows that are gone, or now have an error.
     """
-    known, left = {one.row: one for one in before.items}, {one.row for one in now.items}
-    is_other = not (
-        _is_alike(before.building, now.building, BUILDING_INPUTS)
-        and before.hazard == now.hazard
-        and before.site_ground == now.site_ground
-        and len(before.floors) == len(now.floors)
-        and all(_is_alike(one, other, FLOOR_INPUTS) for one, other in zip(before.floors, now.floors, strict=True))
+    building, floor, piece = (attrgetter(*names) for names in (BUILDING_INPUTS, FLOOR_INPUTS, ITEM_INPUTS))
+    known, left = {one.row: piece(one) for one in before.items}, {one.row for one in now.items}
+    is_other = (
+        building(before.building) != building(now.building)
+        or (before.hazard, before.site_ground) != (now.hazard, now.site_ground)
+        or [*map(floor, before.floors)] != [*map(floor, now.floors)]
     )
-    changed = [
-        one.row
-        for one in now.items
-        if is_other or one.row not in known or not _is_alike(known[one.row], one, ITEM_INPUTS)
-    ]
+    changed = [one.row for one in now.items if is_other or known.get(one.row) != piece(one)]
     return [*changed, *(row for row in known if row not in left)]
-
-
-def _is_alike(one: object, other: object, fields: Iterable[str]) -> bool:
-    return all(getattr(one, name) == getattr(other, name) for name in fields)

@@ -7,7 +7,6 @@ but that the run knows more: of a floor with a record, say, Excel shows ``run as
 import re
 from collections import OrderedDict
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from itertools import islice, product
 from threading import Lock
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -68,14 +67,13 @@ class LiveRow(NamedTuple):
 Rows = Mapping[int, LiveRow]
 
 
-@dataclass(frozen=True, slots=True)
-class _State:
+class _State(NamedTuple):
     """What is shown of one version: rows by number, the live columns, and all of the answer but the rows."""
 
     version: int
-    rows: Rows = field(default_factory=dict)
-    columns: tuple[int, ...] = ()
-    rest: Mapping[str, Any] = field(default_factory=dict)
+    rows: Rows
+    columns: tuple[int, ...]
+    rest: Mapping[str, Any]
 
 
 class LiveView:
@@ -98,36 +96,24 @@ class LiveView:
                 if self._states:  # rows that are alike are held once
                     known = next(reversed(self._states.values())).rows
                     rows = {at: known[at] if known.get(at) == row else row for at, row in now.rows.items()}
-                    now = replace(now, rows=rows)
+                    now = now._replace(rows=rows)
                 self._states[now.version] = now
                 while len(self._states) > MOST_VERSIONS:
                     self._states.popitem(last=False)
         is_whole = before is None or before.columns != now.columns
         old: Rows = {} if is_whole or before is None else before.rows
         changed = {number: row for number, row in now.rows.items() if old.get(number) != row}
-        return {
-            "version": now.version,
-            "whole": is_whole,
-            "items": describe_rows(changed, now.columns),
-            "gone": [number for number in old if number not in now.rows],
-            **now.rest,
-        }
+        gone = [number for number in old if number not in now.rows]
+        items = describe_rows(changed, now.columns)
+        return {"version": now.version, "whole": is_whole, "items": items, "gone": gone, **now.rest}
 
 
 def describe_rows(rows: Rows, columns: Iterable[int] = ()) -> dict[str, Any]:
     """Return rows as columns; without `columns`, the places of the live ones, what the page compares alone."""
-    shown = list(rows.values())
-    return {
-        "row": list(rows),
-        "class": [row.risk for row in shown],
-        "word": [row.word for row in shown],
-        "chance": [row.chance for row in shown],
-        "outside": [row.outside for row in shown],
-        "values": {str(at): [row.values[place] for row in shown] for place, at in enumerate(columns)},
-    }
-
-
-# ---------------------------------------------------------------- one version
+    *compared, values = map(list, zip(*rows.values(), strict=True) if rows else [()] * 5)
+    named = zip(("class", "word", "chance", "outside"), compared, strict=True)
+    own = {str(at): [row[place] for row in values] for place, at in enumerate(columns)}
+    return {"row": list(rows), **dict(named), "values": own}
 
 
 def _describe_state(snapshot: "Snapshot") -> _State:
@@ -149,13 +135,8 @@ def _describe_state(snapshot: "Snapshot") -> _State:
             peaks = {axis: [one.pfa for one in demands.get((row.get("floor"), axis), ())] for axis in AXES}
             largest = {f"pfa_{axis.lower()}": max(own) / GRAVITY if own else None for axis, own in peaks.items()}
             floors.append({"row": row.number, "floor": row.get("floor"), **largest})
-        rest = {
-            "problems": problems[:MOST_PROBLEMS],
-            "more": max(0, len(problems) - MOST_PROBLEMS),
-            "counts": count_classes(rows, snapshot.tables["Items"]),
-            "floors": floors,
-            "error": fault,
-        }
+        counts, more = count_classes(rows, snapshot.tables["Items"]), max(0, len(problems) - MOST_PROBLEMS)
+        rest = {"problems": problems[:MOST_PROBLEMS], "more": more, "counts": counts, "floors": floors, "error": fault}
         return _State(snapshot.version, rows, tuple(columns), rest)
 
 
@@ -168,9 +149,6 @@ def say_fault(problems: Sequence[Problem], found: Evaluation) -> str:
         return ""
     why = [*found.problems, *(one for one in problems if isinstance(one, Gap) and one.severity == "error")]
     return " ".join(gettext(one.message) for one in dict.fromkeys(why[:MOST_NAMED]))
-
-
-# ---------------------------------------------------------------- rows
 
 
 def list_rows(
@@ -234,9 +212,6 @@ def count_classes(rows: Rows, items: Table) -> dict[str, int]:
     return counts
 
 
-# ---------------------------------------------------------------- pieces that were assessed
-
-
 def _list_assessed(assessment: Assessment, labels: Sequence[str]) -> dict[int, LiveRow]:
     """Return what is shown of each piece under the motion that governs it."""
     at, adoption, held = assessment.governing, assessment.adoption, assessment.held.tolist()
@@ -244,16 +219,12 @@ def _list_assessed(assessment: Assessment, labels: Sequence[str]) -> dict[int, L
     texts = _name_classes(assessment, risks, outside)
     columns, blank = _list_columns(assessment, texts) if labels else {}, [None] * len(texts)
     values = zip(*(columns.get(label, blank) for label in labels), strict=True) if labels else [()] * len(texts)
-    found = zip(
-        assessment.inventory.items, risks.tolist(), adoption.probability[at].tolist(), outside.tolist(), held, texts,
-        values, strict=True,
-    )  # fmt: skip
-    return {
-        item.row: LiveRow("", text, None, False, shown)
-        if is_held
-        else LiveRow(CLASSES[risk], "", chance, is_outside, shown)
-        for item, risk, chance, is_outside, is_held, text, shown in found
-    }
+    shown = (risks.tolist(), adoption.probability[at].tolist(), outside.tolist(), held, texts, values)
+    rows = {}
+    for item, risk, chance, is_outside, is_held, text, own in zip(assessment.inventory.items, *shown, strict=True):
+        row = LiveRow(CLASSES[risk], "", chance, is_outside, own)
+        rows[item.row] = LiveRow("", text, None, False, own) if is_held else row
+    return rows
 
 
 def _find_outside(assessment: Assessment, method: Method) -> NDArray[np.bool_]:
@@ -283,19 +254,14 @@ def _list_columns(assessment: Assessment, classes: Sequence[str]) -> dict[str, S
         breadth: cases.breadth / LENGTH["cm"],
         height: cases.height / LENGTH["cm"],
     }
-    return {  # "" for NaN, as a sheet shows it
-        **{
-            name: ["" if one != one else one for one in np.round(values[at], DECIMALS).tolist()]
-            for name, values in numbers.items()
-        },
+    rounded = {name: np.round(values[at], DECIMALS).tolist() for name, values in numbers.items()}
+    return {
+        **{name: ["" if one != one else one for one in own] for name, own in rounded.items()},  # NaN as in a sheet
         risk: classes,
         by_paper: _name_classes(assessment, of_paper, _find_outside(assessment, paper)),
         can_rock: [yes if one else no for one in can_rock_at.tolist()],
         axis: [assessment.case_demand[case].axis for case in at.tolist()],
     }
-
-
-# ---------------------------------------------------------------- problems
 
 
 def describe_problems(problems: Iterable[Problem], sheets: Mapping[str, str]) -> list[dict[str, Any]]:

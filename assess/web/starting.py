@@ -83,6 +83,7 @@ def build_workbook(request: Mapping[str, Any]) -> Made:
         "building": _text(request, "building"), "address": _text(request, "town"), "use": use,
         "shaking": choose_shaking(request),
     }  # fmt: skip
+    building = {field: value for field, value in building.items() if value}
     floor, room = _text(request, "floor") or "1", _text(request, "room")
     pieces = list(_list_pieces(request.get("pieces") or []))
     if kind == "example":
@@ -97,21 +98,14 @@ def build_workbook(request: Mapping[str, Any]) -> Made:
 
     with speaking(load_catalogue(language)), private_folder("assess-new-") as folder:
         rows: dict[str, list[dict[str, Any]]] = {
-            CATALOGUE.name: read_catalogue(units, use), BUILDING.name: [_leave_out_blanks(building)],
-            FLOORS.name: [], ITEMS.name: [],
+            CATALOGUE.name: read_catalogue(units, use), BUILDING.name: [building], FLOORS.name: [], ITEMS.name: []
         }  # fmt: skip
         if kind == "template":
+            place = {"floor": floor} | ({"room": room} if room else {})
             rows[FLOORS.name] = [{"floor": floor} | ({"elevation": 0} if floor.casefold() in GROUND else {})]
-            rows[ITEMS.name] = [
-                _leave_out_blanks({"item": f"A{at}", "floor": floor, "room": room, "type": gettext(piece)})
-                for at, piece in enumerate(pieces, 1)
-            ]
+            rows[ITEMS.name] = [{"item": f"A{n}", **place, "type": gettext(one)} for n, one in enumerate(pieces, 1)]
         write_workbook(folder / name, store_live(Content(rows), units), units)
         return Made(name, (folder / name).read_bytes())
-
-
-def _leave_out_blanks(row: Mapping[str, str]) -> dict[str, Any]:
-    return {name: value for name, value in row.items() if value}
 
 
 def choose_shaking(request: Mapping[str, Any]) -> str:
