@@ -78,9 +78,6 @@ def check_name(name: object) -> str:
     raise RequestError(fill("{name} cannot be the name of a workbook.", name=repr(text[:LONGEST])), UNUSABLE, fix)
 
 
-# ---------------------------------------------------------------- the files that a workbook names
-
-
 def list_missing(workbook: Workbook, sheets: Mapping[str, PageSheet], folder: Path) -> list[dict[str, Any]]:
     """Return the files that a workbook names and that are not in its folder, each with the cells that name it.
 

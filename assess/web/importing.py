@@ -56,9 +56,6 @@ def _describe_taken(taken: Mapping[str, Any]) -> dict[str, Any]:
     return {**taken, "of": taken["pieces"] + maybe, "skipped": groups, **said}
 
 
-# ---------------------------------------------------------------- reading
-
-
 class _Asked(threading.Event):
     """Set where a reading is to stop: by hand, or as nobody asks how far it is any more."""
 

@@ -228,9 +228,6 @@ def _find_other(session: Path, workbook: Path) -> int | None:
     return None
 
 
-# ---------------------------------------------------------------- who may come in
-
-
 def _is_same(one: str, other: str) -> bool:
     return bool(other) and hmac.compare_digest(one.encode("utf-8", "replace"), other.encode())
 

@@ -34,9 +34,6 @@ def run_checks(tables: Tables, checks: Sequence[Check]) -> tuple[Tables, list[Pr
     return tables, problems
 
 
-# ---------------------------------------------------------------- names
-
-
 def duplicates(table: Table, *names: str) -> Iterator[tuple[Row, Row]]:
     """Yield every row whose fields another row above it has alike, and the first such row."""
     first: dict[tuple[str, ...], Row] = {}
@@ -126,9 +123,6 @@ def _report_no_sheet(table: Table, name: str, named: Sequence[Row], sheet: str, 
         )  # fmt: skip
     fix = fill("Add the sheet, or clear the column.")
     return table.problem(name, named[0], message, fix, "warning" if is_spare else "error")
-
-
-# ---------------------------------------------------------------- catalogue and floors
 
 
 def check_catalogue(tables: Tables) -> Iterator[Problem]:
@@ -225,9 +219,6 @@ def check_velocities(tables: Tables) -> Iterator[Problem]:
             if row.get(pfv) is not None and not table.says(row, pfa, record):
                 message = fill("PFV {axis} is filled in without PFA {axis} and would not be used.", axis=axis)
                 yield table.habit(pfv, row, message, fill("Fill in PFA {axis}, or clear PFV {axis}.", axis=axis))
-
-
-# ---------------------------------------------------------------- furniture
 
 
 def check_item_names(tables: Tables) -> Iterator[Problem]:

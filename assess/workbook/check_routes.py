@@ -22,9 +22,6 @@ MOST_NAMED = 3
 """So many rooms are named in one sentence."""
 
 
-# ---------------------------------------------------------------- segments
-
-
 def check_names(tables: Tables) -> Iterator[Problem]:
     """Check that places and segments name what is there, and that none is there twice."""
     table = tables["Routes"]
@@ -132,9 +129,6 @@ def _ends_of(row: Row) -> frozenset[str]:
     return frozenset(key(row.get(name)) for name in ("start", "end"))
 
 
-# ---------------------------------------------------------------- the network
-
-
 def check_network(tables: Tables) -> Iterator[Problem]:
     """Warn of rooms that are on no route, and of routes that lead to no exit.
 
@@ -161,9 +155,6 @@ def check_network(tables: Tables) -> Iterator[Problem]:
     if joined and not any(places.spoilt("kind", row) or row.get("kind") in OUT for row in own):
         message = fill("no place of Kind exit or stair is joined by any segment, so no room is evaluated.")
         yield table.problem("end", joined[0], message, fill("Fill in the Kind of the places that lead out."), "warning")
-
-
-# ---------------------------------------------------------------- furniture next to routes
 
 
 def check_next_to_routes(tables: Tables) -> Iterator[Problem]:
@@ -261,9 +252,6 @@ def _list_on_plan(routes: Table, places: Table) -> Iterator[tuple[Row, dict[str,
 
 def _count_pieces(rows: Iterable[Row]) -> int:
     return sum(row.get("quantity") or 1 for row in rows)
-
-
-# ---------------------------------------------------------------- rooms
 
 
 def check_segment_rooms(tables: Tables) -> Iterator[Problem]:

@@ -108,8 +108,6 @@ def convert_row(sheet: Sheet, row: Mapping[str, Any], units: Units) -> dict[str,
     return converted
 
 
-# ---------------------------------------------------------------- the types and the example room of one use
-
 ROOM = "Example room: delete these rows"
 """Name of the room of every example row."""
 

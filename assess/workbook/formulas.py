@@ -97,9 +97,6 @@ def worse_axis(x: str, y: str) -> str:
     return f'IF(ROUND({x},{ALIKE})>=ROUND({y},{ALIKE}),"X","Y")'
 
 
-# ---------------------------------------------------------------- names and choices in cells
-
-
 def quote(text: str) -> str:
     """Return a text in the language in use as formulas write it."""
     return f'"{gettext(text)}"'

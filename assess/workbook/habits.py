@@ -19,62 +19,33 @@ SHOWN_CELLS = 3
 _BLANK = dict.fromkeys(("column", "text", "value", "cells"), "")
 
 _HABITS: Mapping[str, tuple[Text, Text]] = {
-    "unit": (
-        nfill("{column}: {text} holds its unit; it is read as {value}.",
-              "{column}: {n:,} cells hold their unit, such as {text}, which is read as {value} ({cells}).",
-              1, **_BLANK),
-        fill("The unit is in the header."),
-    ),
-    "percent": (
-        nfill("{column}: {text} is a percentage; it is read as {value}.",
-              "{column}: {n:,} cells hold a percentage, such as {text}, which is read as {value} ({cells}).",
-              1, **_BLANK),
-        fill("The percentage is converted to the unit of the column."),
-    ),
-    "comma": (
-        nfill("{column}: {text} has a decimal comma; it is read as {value}.",
-              "{column}: {n:,} cells have a decimal comma, such as {text}, which is read as {value} ({cells}).", 1,
-              **_BLANK),
-        fill("The decimal comma was typed into a text."),
-    ),
-    "thousands": (
-        nfill("{column}: {text} has separators between thousands; it is read as {value}.",
-              "{column}: {n:,} cells have separators between thousands, such as {text}, which is read as {value} "
-              "({cells}).",
-              1, **_BLANK),
-        fill("The separators between thousands were typed into a text."),
-    ),
-    "signs": (
-        nfill("{column}: {text} has look-alike signs or digits; it is read as {value}.",
-              "{column}: {n:,} cells have look-alike signs or digits, such as {text}, which is read as {value} "
-              "({cells}).",
-              1, **_BLANK),
-        fill("A dash or a digit only looks like the plain one."),
-    ),
-    "text": (
-        nfill("{column}: {text} is a number stored as text; it is read as {value}.",
-              "{column}: {n:,} cells hold a number stored as text, such as {text}, which is read as {value} ({cells}).",
-              1, **_BLANK),
-        fill("The number was stored as text."),
-    ),
-    "choice": (
-        nfill("{column}: {text} is read as {value}.",
-              "{column}: {n:,} cells hold a short form, such as {text}, which is read as {value} ({cells}).",
-              1, **_BLANK),
-        fill("The choice is written out."),
-    ),
-    "spaces": (
-        nfill("{column}: {text} has stray spaces; it is read as {value}.",
-              "{column}: {n:,} cells have stray spaces, such as {text}, which is read as {value} ({cells}).",
-              1, **_BLANK),
-        fill("The stray spaces are taken out."),
-    ),
-    "date": (
-        nfill("{column}: {text} is read as the date {value}.",
-              "{column}: {n:,} cells hold a date, such as {text}, which is read as {value} ({cells}).",
-              1, **_BLANK),
-        fill("The date is written as year-month-day."),
-    ),
+    "unit": (nfill("{column}: {text} holds its unit; it is read as {value}.",
+        "{column}: {n:,} cells hold their unit, such as {text}, which is read as {value} ({cells}).",
+        1, **_BLANK), fill("The unit is in the header.")),
+    "percent": (nfill("{column}: {text} is a percentage; it is read as {value}.",
+        "{column}: {n:,} cells hold a percentage, such as {text}, which is read as {value} ({cells}).",
+        1, **_BLANK), fill("The percentage is converted to the unit of the column.")),
+    "comma": (nfill("{column}: {text} has a decimal comma; it is read as {value}.",
+        "{column}: {n:,} cells have a decimal comma, such as {text}, which is read as {value} ({cells}).",
+        1, **_BLANK), fill("The decimal comma was typed into a text.")),
+    "thousands": (nfill("{column}: {text} has separators between thousands; it is read as {value}.",
+        "{column}: {n:,} cells have separators between thousands, such as {text}, which is read as {value} ({cells}).",
+        1, **_BLANK), fill("The separators between thousands were typed into a text.")),
+    "signs": (nfill("{column}: {text} has look-alike signs or digits; it is read as {value}.",
+        "{column}: {n:,} cells have look-alike signs or digits, such as {text}, which is read as {value} ({cells}).",
+        1, **_BLANK), fill("A dash or a digit only looks like the plain one.")),
+    "text": (nfill("{column}: {text} is a number stored as text; it is read as {value}.",
+        "{column}: {n:,} cells hold a number stored as text, such as {text}, which is read as {value} ({cells}).",
+        1, **_BLANK), fill("The number was stored as text.")),
+    "choice": (nfill("{column}: {text} is read as {value}.",
+        "{column}: {n:,} cells hold a short form, such as {text}, which is read as {value} ({cells}).",
+        1, **_BLANK), fill("The choice is written out.")),
+    "spaces": (nfill("{column}: {text} has stray spaces; it is read as {value}.",
+        "{column}: {n:,} cells have stray spaces, such as {text}, which is read as {value} ({cells}).",
+        1, **_BLANK), fill("The stray spaces are taken out.")),
+    "date": (nfill("{column}: {text} is read as the date {value}.",
+        "{column}: {n:,} cells hold a date, such as {text}, which is read as {value} ({cells}).",
+        1, **_BLANK), fill("The date is written as year-month-day.")),
 }  # fmt: skip
 """By habit: what is said of one cell and of many, and what a correction says was done."""
 
@@ -183,8 +154,6 @@ def count_kinds(problems: Sequence[Problem], severity: Severity = "error") -> tu
     found = [one for one in problems if one.severity == severity]
     return len(group_problems(found)), len(found)
 
-
-# ---------------------------------------------------------------- what completes a workbook
 
 BETTER = (
     fill(

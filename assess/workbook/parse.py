@@ -24,10 +24,11 @@ from assess.workbook.values import ERRORS, CellReader, cell_reader, is_blank, re
 if TYPE_CHECKING:
     from assess.workbook.store import Worksheet
 
+FIRST_COLUMNS = 4
+"""A heading stands in one of so many columns from the left."""
+_MOST_RANGES = 10
+_RANGE = re.compile(r"([A-Z]{1,3})(\d+):([A-Z]{1,3})(\d+)")
 _ROWS = re.compile(r"\brow (\d+)|^[A-Z]+(\d+)(?::[A-Z]+(\d+))?$")
-
-
-# ---------------------------------------------------------------- rows that are built in code
 
 
 class CodeCells:
@@ -201,10 +202,8 @@ def parse_sheet(english: Sheet, own: Sheet, language: str, source: Source) -> tu
     parser = _Parser(english, own, source)
     rows = parser.read_form() if own.layout == "form" else parser.read_table()
     if source.last_row > MAX_ROWS or source.far:
-        cell, message = source.far, fill(
-            "a value far to the right of the table; at most {most} columns are read.", most=MAX_COLUMNS
-        )  # fmt: skip
-        fix = fill("Delete the columns right of the table.")
+        cell, fix = source.far, fill("Delete the columns right of the table.")
+        message = fill("a value far to the right of the table; at most {most} columns are read.", most=MAX_COLUMNS)
         if source.last_row > MAX_ROWS:
             cell, fix = source.address(source.last_row), fill("Delete the rows below the table.")
             message = fill("a value far below the table; at most {most:,} rows are read.", most=MAX_ROWS)
@@ -239,8 +238,6 @@ class _Parser:
     def report(self, cell: str, message: str, fix: str = "", severity: Severity = "error", group: str = "") -> None:
         self.problems.append(Problem(severity, self.own.name, cell, message, fix, group))
 
-    # ------------------------------------------------------------------ forms
-
     def read_form(self) -> list[Row]:
         values: dict[str, Any] = {}
         for number, cells in self.source.rows():
@@ -258,14 +255,18 @@ class _Parser:
                 self.report(cell, message, severity="note")
         return [Row(0, values)]
 
-    # ----------------------------------------------------------------- tables
-
     def read_table(self) -> list[Row]:
         rows = self.source.rows()
         top = list(islice(rows, HEADER_ROWS))  # rows without cells are not among them
         candidates = [one for one in top if one[0] <= self.source.header_rows]
-        body = chain(top, rows)
-        best = self._best_row(candidates)
+        labels = [[plain(split_header(str(value))[0]) for value in cells.values()] for _, cells in candidates]
+        body, known, best = chain(top, rows), set[str](), None
+        for version in versions(self.english):
+            known |= {plain(label) for column in version.columns for label in column.labels}
+            scores = [sum(label in known for label in own) for own in labels]
+            best = scores.index(max(scores)) if any(scores) else None
+            if best is not None and {plain(one.label) for one in version.columns if one.required} <= {*labels[best]}:
+                break
         if best is None:
             if self.own.required or candidates:
                 needed = [column.header() for column in self.own.columns if column.required]
@@ -275,7 +276,7 @@ class _Parser:
             for _ in body:  # the rest is read for the bounds of the sheet
                 pass
             return []
-        self.header, headers = best
+        self.header, headers = candidates[best]
         self._read_headers(headers)
         if self.source.kept is not None:
             self.source.kept.serve((self.columns, self.others, self.units, self.blind))
@@ -385,19 +386,6 @@ class _Parser:
                             "{n:,} hidden columns are read as well: {labels}.", len(filled), labels=labels)  # fmt: skip
             self.report(f"{column_letters(filled[0])}1", message, severity="note")
 
-    def _best_row(self, top: Sequence[tuple[int, Cells]]) -> tuple[int, Cells] | None:
-        rows = [[plain(split_header(str(value))[0]) for value in cells.values()] for _, cells in top]
-        known: set[str] = set()
-        best = None
-        for said in versions(self.english):
-            known |= {plain(label) for column in said.columns for label in column.labels}
-            scores = [sum(label in known for label in labels) for labels in rows]
-            best = scores.index(max(scores)) if any(scores) else None
-            needed = {plain(column.label) for column in said.columns if column.required}
-            if best is not None and needed <= {*rows[best]}:
-                break
-        return None if best is None else top[best]
-
     def _read_headers(self, cells: Cells) -> None:
         texts = {at: read_text(value) for at, value in sorted(cells.items()) if _shown(value) is not None}
         labels = {plain(split_header(text)[0]) for text in texts.values()}
@@ -449,11 +437,8 @@ class _Parser:
             wrong = fill("{label} has no unit.", label=column.label)
             if unit is not None:
                 wrong = fill("the unit {unit} of {label} is not known.", unit=shorten(unit), label=column.label)
-            fix = fill(
-                "Write the unit that the numbers are in, such as {header}; known units: {units}.",
-                header=column.header(),
-                units=", ".join(QUANTITIES[column.quantity]),
-            )
+            values = {"header": column.header(), "units": ", ".join(QUANTITIES[column.quantity])}
+            fix = fill("Write the unit that the numbers are in, such as {header}; known units: {units}.", **values)
             self.report(cell, wrong, fix)
         return column, False
 
@@ -472,8 +457,6 @@ class _Parser:
             if at in columns and (value := self._value(columns[at], cells.get(at), number, at)) is not None:
                 values[columns[at].name] = value
         return Row(number, values, extra)
-
-    # ------------------------------------------------------------------ cells
 
     def _value(self, column: Column, value: Any, number: int, at: int) -> Any:
         if value is None and not column.required:
@@ -500,15 +483,6 @@ class _Parser:
 
 def _shown(value: Any) -> Any:
     return None if value is UNSAVED else value
-
-
-# ---------------------------------------------------------------- rows that are no entries, and hidden ones
-
-FIRST_COLUMNS = 4
-"""A heading stands in one of so many columns from the left."""
-
-_MOST_RANGES = 10
-_RANGE = re.compile(r"([A-Z]{1,3})(\d+):([A-Z]{1,3})(\d+)")
 
 
 def find_lone_text(cells: Cells, known: Collection[int], first: Collection[int]) -> int | None:

@@ -313,9 +313,6 @@ def _check_direction(
         yield table.problem(name, row, message, fill("Check the axis, or Azimuth of X in Building."), "warning")
 
 
-# ---------------------------------------------------------------- names of files
-
-
 def find_file(text: str, folder: Path) -> Path:
     """Return the file that `text` names inside `folder`.
 

@@ -102,9 +102,6 @@ def _change(table: Table, changes: Mapping[int, Mapping[str, Any]]) -> Table:
     return replace(table, rows=tuple(rows)) if changes else table
 
 
-# ---------------------------------------------------------------- the model
-
-
 def build_building(table: Table, logo: Path | None) -> Building:
     """Return the building; `logo` is the picture that its line names."""
     values = table.rows[0].values if table.rows else {}
@@ -174,9 +171,6 @@ def turned_axis(row: Row) -> Axis | None:
     """Return the axis that an item's angle lies along."""
     angle = row.get("angle_deg")
     return None if angle is None else axis_of(angle)
-
-
-# ---------------------------------------------------------------- what is left of a faulty workbook
 
 
 def leave_out(tables: Tables) -> tuple[Tables, list[Problem]]:

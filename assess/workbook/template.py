@@ -175,8 +175,6 @@ class _Writer:
         self._write_live(pages["Items"])
         pages["Items"].activate() if self.content.rows else help_sheet.activate()
 
-    # ------------------------------------------------------------ sheets to fill
-
     def _write_form(self, page: Any, sheet: Sheet) -> None:
         values = (self.rows[sheet.name] or [{}])[0]
         page.set_column(0, 0, max(fit_width(self._header(column).replace(" ", "_"), 22) for column in sheet.columns))
@@ -254,8 +252,6 @@ class _Writer:
         page.write_string(row, 2, text, self.help)
         page.set_row(row, LINE * count_text_lines(text, _HELP_WIDTH - 1))
 
-    # --------------------------------------------------------------- live columns
-
     def _write_live(self, page: Any) -> None:
         for label in (*LIVE, *WORKINGS):
             at = PLACES[ITEMS.name, label]
@@ -288,8 +284,6 @@ class _Writer:
             page.conditional_format(f"{column}{first}:{column}{last}", bare)
             note = {"validate": "any", "input_title": gettext(COPY_TITLE), "input_message": gettext(COPY_NOTE)}
             page.data_validation(f"{column}{first}:{column}{last}", note)
-
-    # ----------------------------------------------------------------------- help
 
     def _write_help(self, page: Any) -> None:
         page.set_column(0, 0, 14)
