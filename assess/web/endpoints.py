@@ -55,7 +55,6 @@ TYPES = {
 }  # fmt: skip
 """Kinds of the files of the page, whatever the registry of the machine calls them."""
 LOG = logging.getLogger("assess.web")
-
 Answer = dict[str, Any] | Response
 Handler = Callable[["Asked"], Answer]
 

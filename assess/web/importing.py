@@ -36,7 +36,6 @@ PATIENCE = 2.0
 MOST_ROWS = 2000
 """Rows of what was skipped that the page gets."""
 LOG = logging.getLogger("assess.web")
-
 Routes = Literal["none", "draft"]
 ROUTES: tuple[Routes, ...] = ("none", "draft")
 

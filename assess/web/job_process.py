@@ -30,7 +30,6 @@ TOLD_EVERY = 0.1
 """Shortest time between two reports of one stage [s]."""
 LOWER_PRIORITY = 5
 """How far this process stands back for the server, which answers while it works."""
-
 Tell = Callable[[dict[str, Any]], None]
 
 

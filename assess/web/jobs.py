@@ -203,13 +203,10 @@ class Job:
 
 _OWN_GROUP: int = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
 """Out of the reach of a Ctrl-C in the terminal on Windows; elsewhere the process gets a session of its own."""
-
-
 FORMATS = tuple(name for name in FILES if name not in ("npz", "parquet"))
 """Files that the page offers; results.json is always written."""
 OPTIONS = ("verify", "runs", "seed", "scale", "scenario")
 """Settings that the page may choose; fitted models and templates are code, and never come from a page."""
-
 ITEM_INPUTS = (
     "item", "floor", "breadth", "width", "height", "centre_of_gravity", "weight", "bracket_height", "bracket_capacity",
     "axis", "anchored", "friction", "angle_deg", "quantity",

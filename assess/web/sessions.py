@@ -60,7 +60,6 @@ class Limits:
 
 HOSTED = Limits(bytes=300_000_000, sessions=50, jobs=2, idle=12 * 3600.0)
 """Limits of a server for several users."""
-
 SENDING = fill("Another building model is being sent. Wait until it has been received, then try again.")
 
 

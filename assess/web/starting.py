@@ -35,7 +35,6 @@ ROOMS: Mapping[str, tuple[Text, ...]] = {
 """Names that are offered for the first room, by use."""
 GROUND = ("1", "0", "g", "gf", "t", "pt", "ground", "ground floor", "piano terra")
 """Names of a floor that lies on the ground; of any other the height is not known until one fills it in."""
-
 Units = Literal["si", "imperial"]
 UNITS: tuple[Units, ...] = ("si", "imperial")
 Choice = TypeVar("Choice", bound=str)

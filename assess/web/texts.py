@@ -11,7 +11,6 @@ from assess.i18n import LANGUAGES, list_languages, load_catalogue
 COOKIE = "assess-language"
 """The cookie in which the page keeps the language that its user chose."""
 PAGE = Path(__file__).with_name("page")
-
 _STRING = r"""(?:"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'|`(?:[^`\\$]|\\.)*`)"""
 _SUM = rf"{_STRING}(?:\s*\+\s*{_STRING})*"
 _CALL = re.compile(rf"(?<![\w$.])(?:t\(\s*(?P<text>{_SUM})|tn\(\s*(?P<one>{_SUM})\s*,\s*(?P<many>{_SUM}))")

@@ -22,14 +22,11 @@ if TYPE_CHECKING:
 
 CONTENTS = ("open", "storage", "equipment", "paper", "dense", "solid")
 """What a piece is, or is full of, by which its weight is estimated: lightest first."""
-
 ASSUMED = "assumed"
 """How the source of a type begins where no citable source prints its sizes; such a source is translated."""
-
 _NUMBERS = {"breadth": "breadth_cm", "width": "width_cm", "height": "height_cm", "weight": "weight_kg",
             "centre_of_gravity": "centre_percent"}  # fmt: skip
 """Columns of the file by field; each in the SI unit of the field's header."""
-
 _DECIMALS = 2
 
 

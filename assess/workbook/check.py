@@ -19,7 +19,6 @@ from assess.workbook.resolve import build_catalogue, defined, filled_sizes, turn
 from assess.workbook.schema import SHAKEN
 
 Check = Callable[[Tables], Iterable[Problem]]
-
 _LIKE = 2.0
 """Ratio up to which a size is like that of its Type [-]."""
 

@@ -16,7 +16,6 @@ from assess.workbook.schema import DEFAULT_WIDTH
 
 DRAFT = fill("(draft)")
 """The mark, in English; it is known in every language."""
-
 LONGEST = 60
 """Characters of a marked name: a longer one would be cut in messages, and lose its mark there."""
 

@@ -13,10 +13,8 @@ from assess.workbook.schema import BUILDING, CATALOGUE, FLOORS, ITEMS, SHEETS, S
 from assess.workbook.template import Content, Units
 
 SCENARIO = "Example values, not a real building"
-
 _DECIMALS = {"in": 1, "ft": 2, "in/s": 1}
 """Decimals that a converted value keeps, by unit."""
-
 _ROWS: Mapping[str, tuple[dict[str, Any], ...]] = {
     "Building": (
         {"building": "Example office", "use": "Office", "storeys": 2, "height": 7.5, "period": 0.4,
@@ -110,9 +108,7 @@ def convert_row(sheet: Sheet, row: Mapping[str, Any], units: Units) -> dict[str,
 
 ROOM = "Example room: delete these rows"
 """Name of the room of every example row."""
-
 FLOOR = {"floor": "1", "name": "Ground floor", "elevation": 0}
-
 SHAKING = {"pfa_x": 0.3, "pfa_y": 0.25, "pfv_x": 28, "pfv_y": 24}
 """Made-up shaking of the floor [g, cm/s], for an example that can be run at once."""
 

@@ -19,7 +19,6 @@ from assess.workbook.schema import Column
 
 LIVE_METHODS = tuple(one for one in all_methods() if one.is_live)
 """The methods that have a column in the workbook; those that give a class are among them."""
-
 OUTSIDE = "*"
 """Mark behind a class: outside the range in which its formula was checked."""
 
@@ -104,7 +103,6 @@ def quote(text: str) -> str:
 
 _SPACE = "\u00a0"
 """The space that breaks no line, which texts from documents and pages hold; TRIM leaves it."""
-
 _WILD = "~*?"
 """Signs that MATCH takes for other signs unless a tilde stands before them."""
 

@@ -15,9 +15,7 @@ SHOWN = 60
 _ESCAPE = re.compile(r"_x(00[01][0-9A-Fa-f])_")  # how a workbook writes control characters
 SHOWN_CELLS = 3
 """Cells of a group that its message names."""
-
 _BLANK = dict.fromkeys(("column", "text", "value", "cells"), "")
-
 _HABITS: Mapping[str, tuple[Text, Text]] = {
     "unit": (nfill("{column}: {text} holds its unit; it is read as {value}.",
         "{column}: {n:,} cells hold their unit, such as {text}, which is read as {value} ({cells}).",
@@ -173,13 +171,11 @@ BETTER = (
     ),
 )
 """The three ways to know how the ground shakes better than by an assumed intensity."""
-
 ASSUME = fill(
     "If you know none of these: choose how strongly the ground shakes in Shaking in Building, such as 'MMI VII, very "
     "strong', and fill in the Elevation of every floor, or, where floors are called by their number, Height and "
     "Storeys in Building. The reports then say that the shaking is assumed."
 )
-
 LIST = fill(
     "Furniture: in Items, write one row for each piece. Give it a name, its floor, and a Type of the Catalogue, or its "
     "Breadth and Height."

@@ -47,39 +47,27 @@ def list_columns(sheet: Sheet) -> list[str]:
 
 PLACES = {(sheet.name, name): at for sheet in SHEETS for at, name in enumerate(list_columns(sheet))}
 """Column, from 0, in which the workbook has a field or a column that is computed; of a form, the line."""
-
 LETTERS = {where: xl_col_to_name(at) for where, at in PLACES.items()}
 """The same as letters."""
-
 Units = Literal["si", "imperial"]
-
 ROW = "\x00"
 """Stands for the number of the row in formulas that are the same for every row."""
-
 LISTS_NOTE = "Lists, units and helper columns for the drop-downs and live columns. Please leave this sheet as it is."
-
 ROWS = {"Floors": 100, "Items": 200, "Places": 200, "Routes": 200, "Catalogue": 200, "Costs": 50}
 """Rows of each table that are prepared; a longer table is read all the same."""
-
 RUN_ASSESS = "run assess"
 """What the live columns show of a floor whose motion only the program computes: from a record, by interpolation, by a
 code's profile."""
-
 NO_SHAKING = "shaking?"
 """What they show of a floor that nothing serves: `assess run` would name it in an error."""
-
 NO_UNIT = "unit?"
 """What they show where the bracket of a header holds no unit that is known."""
-
 WRONG = "check"
 """What they show where a cell holds no number, or one that the program refuses."""
-
 EMPTY = '""'
 """A blank text in a formula."""
-
 LISTED = ("length", "acceleration", "velocity", "time", "share")
 """Quantities of which the sheet holds the units."""
-
 _NEEDED_FACTORS = (
     ("Items", "breadth"), ("Items", "height"), ("Catalogue", "breadth"), ("Catalogue", "height"),
     ("Items", "width"), ("Catalogue", "width"),
@@ -88,18 +76,14 @@ _NEEDED_FACTORS = (
     ("Floors", "elevation"),
     ("Items", "centre_of_gravity"), ("Catalogue", "centre_of_gravity"),
 )  # fmt: skip
-
 _OWN_SCENARIOS = {"asfilled": "as filled", "recorded": "recorded", "given": "given"}
 """Scenarios that floors' own values serve, by how choices are compared."""
-
 _TYPE_SIZES, CENTRE = ("breadth", "width", "height"), "centre_of_gravity"
-
 _TYPED = {
     "Floors": ("floor", "elevation", "pfa_x", "pfa_y", "pfv_x", "pfv_y", "record_x", "record_y"),
     "Catalogue": ("type", *_TYPE_SIZES, CENTRE),
 }
 """Fields of which a helper column is computed; their columns are named after them."""
-
 _FLOOR_HELPERS = (
     "key", "own_pfa_x", "own_pfa_y", "own_pfv_x", "own_pfv_y", "z", "at_grade", "place", "place_at", "place_part",
     "pfv_own_x", "pfv_own_y", "beam_pfa", "beam_pfv", "spread", "hint", "pfa_x", "pfa_y", "pfv_x", "pfv_y", "best",
@@ -107,10 +91,8 @@ _FLOOR_HELPERS = (
 """Columns of the sheet for a row of Floors, in this order: its name, its own motion by axis; Elevation [m], whether it
 has a motion of its own at grade, z/h, and where that lies in the table; PFV of a typed PFA, what follows from the
 ground, and the variance of ln of what is drawn; what it shows if it has no motion, and what serves each axis."""
-
 _TYPE_HELPERS = ("key", *_TYPE_SIZES, CENTRE)
 """Columns of the sheet for a row of the Catalogue: its name, its sizes [cm], and its centre of gravity [-]."""
-
 _SPEED = 100 * GRAVITY
 """From s to cm/s per g."""
 _COLUMNS = len(medians.PLACES) + 1

@@ -16,7 +16,6 @@ from assess.workbook.schema import CLASS, CLASS_OR, ITEMS, LIVE, NO, WORKINGS, Y
 
 NO_FLOOR, NO_AXIS, NO_TYPE = "floor?", "axis?", "type?"
 """What the live columns show without a known floor, with an unknown axis, and where no known type gives the sizes."""
-
 IS_ANCHORED = "anchored"
 """What they show in place of the class of a piece that is anchored."""
 

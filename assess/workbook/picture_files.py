@@ -28,7 +28,6 @@ LEAST_SPREAD = 2.0
 """Spread of pieces [m] below which nothing follows from it."""
 MOST_NAMED = 3
 """Pieces that a warning names."""
-
 Made = TypeVar("Made")
 
 

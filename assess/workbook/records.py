@@ -93,7 +93,6 @@ def replace_ground(tables: Tables, ground: GroundField) -> tuple[Tables, list[Pr
 _RESERVED = frozenset(
     {"CON", "PRN", "AUX", "NUL", *(f"{port}{number}" for port in ("COM", "LPT") for number in range(10))}
 )
-
 Files = Mapping[str, bytes] | Path | None
 """Where files are looked for: handed over as bytes by name, in a folder, or nowhere."""
 

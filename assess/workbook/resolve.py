@@ -9,34 +9,20 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
+from assess import model
 from assess.errors import Correction, Problem
 from assess.i18n import fill, nfill
-from assess.model import (
-    AXES,
-    Axis,
-    Building,
-    CatalogueType,
-    Cost,
-    Floor,
-    FloorPlan,
-    FloorRecord,
-    Item,
-    Place,
-    Segment,
-    axis_of,
-)
+from assess.model import AXES, Axis, CatalogueType, FloorPlan, FloorRecord, Item, axis_of
 from assess.workbook.habits import note, shorten
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table, Tables, row_numbers
 from assess.workbook.schema import PICTURE_FIELDS
 
 _ITEM_FIELDS = frozenset(field.name for field in fields(Item))
-
 SIZES = ("breadth", "width", "height")
 FROM_TYPE = (*SIZES, "weight", "centre_of_gravity")
 """Fields of an item that its type of the catalogue gives where they are blank."""
-
-T = TypeVar("T", CatalogueType, Cost, Place, Segment)
+T = TypeVar("T", CatalogueType, model.Cost, model.Place, model.Segment)
 
 
 def defined(table: Table, name: str = "") -> dict[str, str]:
@@ -102,11 +88,11 @@ def _change(table: Table, changes: Mapping[int, Mapping[str, Any]]) -> Table:
     return replace(table, rows=tuple(rows)) if changes else table
 
 
-def build_building(table: Table, logo: Path | None) -> Building:
+def build_building(table: Table, logo: Path | None) -> model.Building:
     """Return the building; `logo` is the picture that its line names."""
     values = table.rows[0].values if table.rows else {}
     cells = {name: table.cell(name, 0) for name in table.places}
-    return Building(**{**values, "logo": logo}, cells=cells)
+    return model.Building(**{**values, "logo": logo}, cells=cells)
 
 
 def build_rows(kind: type[T], table: Table, *needed: str) -> tuple[T, ...]:
@@ -121,10 +107,10 @@ def build_catalogue(table: Table) -> tuple[CatalogueType, ...]:
 
 def build_floors(
     table: Table, records: Mapping[tuple[int, Axis], tuple[FloorRecord, ...]], plans: Mapping[int, FloorPlan]
-) -> tuple[Floor, ...]:
+) -> tuple[model.Floor, ...]:
     """Return the floors; `records` and `plans` are found by the number of their row."""
     return tuple(
-        Floor(
+        model.Floor(
             row=row.number,
             floor=row.get("floor"),
             name=row.get("name") or "",

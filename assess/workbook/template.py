@@ -12,6 +12,7 @@ header, so that a header edited by another program, as when a unit is changed, m
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -22,17 +23,13 @@ from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, write_plainly
 from assess.workbook.lists import FROZEN, LETTERS, PLACES, ROW, ROWS, ListsWriter, Units
 from assess.workbook.live_row import list_live
 from assess.workbook.names import say_live
-from assess.workbook.schema import CATALOGUE, CLASS, CLASS_OR, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
+from assess.workbook.schema import CATALOGUE, CLASS, CLASS_OR, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column
 from assess.workbook.writer import write_book
 
 __all__ = ["ROWS", "Content", "Rows", "Units", "describe", "write_workbook"]
-
 Rows = Sequence[Mapping[str, Any]]
-
 TITLE = "Furniture in earthquakes: how to fill this in"
-
 HEADS = ("Sheet", "Column", "What to fill in")
-
 FIRST_LINES = (
     "1. Building: what you know of the building and the earthquake. Every line may stay blank.",
     "2. Floors: one row a floor with furniture. Give its peak floor acceleration (PFA), or name the file of a recorded "
@@ -60,44 +57,35 @@ FIRST_LINES = (
     "where they can be read in one way only. floor?, axis?, type?, unit?: the floor, the axis, the type or the unit "
     "of a header is not known.",
 )
-
 CLASS_NOTE = (
     "Computed by Excel from this row, by the formula that Class by in Building chooses. {mark} behind a class: outside "
     "the range in which the formula was checked. shaking?: nothing tells how the floor shakes. run assess: only assess "
     "run can tell. check: a cell holds a text, or a number out of range; assess check tells which, and may take it "
     "all the same."
 )
-
 ROCK_NOTE = (
     "Whether the piece can start to rock in an earthquake like this one, if it is as strong as is taken into account "
     "(Motion uncertainty in Building). no: simulation will find the class low, whatever the formula gives here."
 )
-
 FOOTER = "&C&A, page &P of &N"
 """In the spreadsheet program's own signs: centred, the sheet's name, its page and the number of pages."""
-
 COPY_TITLE = "No formula in this row"
 COPY_NOTE = (
     "Copy the cell above down to here, and the grey columns at the right with it. The program reads the row all the "
     "same."
 )
 """Input message of the class below the last row that has formulas."""
-
 CHECKED = {ITEMS.name: 2000}
 """Rows that have drop-downs and colours, where these are more than `ROWS`."""
-
 _LIVE_FORMATS = {
     "B/H": "0.000", "PFA used [g]": "0.000", **dict.fromkeys((one.short_title for one in LIVE_METHODS), "0.00"),
     "Row in Floors": "0", "Row in Catalogue": "0", "PFV used [cm/s]": "0.0", "Breadth used [cm]": "0.0",
     "Height used [cm]": "0.0",
 }  # fmt: skip
 """Number formats of the columns that Excel computes, where they hold numbers."""
-
 _LIVE_WIDTHS, _HELP_WIDTH = {CLASS: 17, CLASS_OR: 17}, 90
-
 MOST_NAMED = 8
 """Choices that a help names; of more, the drop-down shows them all, and a spreadsheet cuts long helps."""
-
 CREATED = datetime(2000, 1, 1)
 """Date in the properties of every workbook: the same content gives the same bytes."""
 
@@ -170,36 +158,32 @@ class _Writer:
         ListsWriter(self.book, lists, self.title, self.units, self.last).write()
         self._write_help(help_sheet)
         for sheet in SHEETS:
-            write = self._write_form if sheet.layout == "form" else self._write_table
-            write(pages[sheet.name], sheet)
+            page, rows = pages[sheet.name], self.rows[sheet.name]
+            headers = {column.name: self._header(column) for column in sheet.columns}
+            if sheet.layout == "form":
+                page.set_column(0, 0, max(fit_width(header.replace(" ", "_"), 22) for header in headers.values()))
+                page.set_column(1, 1, 44, self.line)
+                page.set_column(2, 2, _HELP_WIDTH, self.help)
+                for at, column in enumerate(sheet.columns):
+                    page.write_string(at, 0, headers[column.name], self.head)
+                    self._write_cell(page, at, 1, column, rows[0].get(column.name) if rows else None, self.line)
+                    self._write_wrapped(page, at, gettext(column.help))
+                    self._validate(page, column, at, 1, at)
+                self._set_up_print(page)
+                continue
+            last = max(self.last[sheet.name] - 1, CHECKED.get(sheet.name, 0))
+            for column in sheet.columns:
+                at, style = PLACES[sheet.name, column.name], self.text if column.kind == "text" else None
+                self._write_head(page, at, headers[column.name], column.width, style)
+                self._validate(page, column, 1, at, last)
+            for (number, row), column in product(enumerate(rows, 1), sheet.columns):
+                self._write_cell(page, number, PLACES[sheet.name, column.name], column, row.get(column.name))
+            page.freeze_panes(1, FROZEN.get(sheet.name, 1))
+            page.autofilter(0, 0, last, max(at for (name, _), at in PLACES.items() if name == sheet.name))
+            page.repeat_rows(0)
+            self._set_up_print(page)
         self._write_live(pages["Items"])
         pages["Items"].activate() if self.content.rows else help_sheet.activate()
-
-    def _write_form(self, page: Any, sheet: Sheet) -> None:
-        values = (self.rows[sheet.name] or [{}])[0]
-        page.set_column(0, 0, max(fit_width(self._header(column).replace(" ", "_"), 22) for column in sheet.columns))
-        page.set_column(1, 1, 44, self.line)
-        page.set_column(2, 2, _HELP_WIDTH, self.help)
-        for at, column in enumerate(sheet.columns):
-            page.write_string(at, 0, self._header(column), self.head)
-            self._write_cell(page, at, 1, column, values.get(column.name), self.line)
-            self._write_wrapped(page, at, gettext(column.help))
-            self._validate(page, column, at, 1, at)
-        self._set_up_print(page)
-
-    def _write_table(self, page: Any, sheet: Sheet) -> None:
-        last = max(self.last[sheet.name] - 1, CHECKED.get(sheet.name, 0))
-        for column in sheet.columns:
-            at = PLACES[sheet.name, column.name]
-            self._write_head(page, at, self._header(column), column.width, self.text if column.kind == "text" else None)
-            self._validate(page, column, 1, at, last)
-        for number, row in enumerate(self.rows[sheet.name], 1):
-            for column in sheet.columns:
-                self._write_cell(page, number, PLACES[sheet.name, column.name], column, row.get(column.name))
-        page.freeze_panes(1, FROZEN.get(sheet.name, 1))
-        page.autofilter(0, 0, last, max(at for (name, _), at in PLACES.items() if name == sheet.name))
-        page.repeat_rows(0)
-        self._set_up_print(page)
 
     def _set_up_print(self, page: Any) -> None:
         page.set_landscape()
@@ -227,11 +211,8 @@ class _Writer:
 
     def _validate(self, page: Any, column: Column, row: int, at: int, last: int) -> None:
         text = describe(column)
-        options: dict[str, Any] = {
-            "input_title": gettext(column.label)[:32],
-            "input_message": text if len(text) <= 255 else text[:254] + "…",
-            "ignore_blank": True,
-        }
+        shown = text if len(text) <= 255 else text[:254] + "…"
+        options = {"input_title": gettext(column.label)[:32], "input_message": shown, "ignore_blank": True}
         if column.choices:
             options |= {"validate": "list", "source": f"=list_{column.name}"}
         elif column.offered:
@@ -322,13 +303,10 @@ def describe(column: Column) -> str:
 
 LINE = 15
 """Height of one line [points]."""
-
 _BOLD = 1.15
 """Width of a bold letter, of the wider fonts that stand in where the workbook's is missing."""
-
 _REGULAR = 0.95
 """Width of a letter that is not bold."""
-
 _EDGE, _BUTTON = 1, 3
 """Left free at the edges, and for the button of a filter, which covers the end of the last line."""
 

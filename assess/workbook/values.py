@@ -24,7 +24,6 @@ from assess.workbook.schema import NO, YES, Column
 
 CellReader = Callable[[object], tuple[object, tuple[Remark, ...]]]
 """Returns a cell's value in SI, and what is remarkable about it; raises CellError."""
-
 ERRORS = frozenset({"#DIV/0!", "#N/A", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!", "#GETTING_DATA", "#SPILL!"})
 _TIMES = (datetime.datetime, datetime.date, datetime.time)
 _WRITE_OUTLINE = fill(
@@ -204,7 +203,6 @@ SAME = 1e-3
 _COORDINATE = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)")
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
 _MAYBE_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2},\d{3}")
-
 Corner = tuple[float, float]
 
 
@@ -281,7 +279,6 @@ def _turn(a: Corner, b: Corner, c: Corner) -> float:
 LONGEST = 60
 """Characters of a text that may be a number or a date."""
 INCHES_OF_A_FOOT = 12
-
 _WIDE = {at: at - 0xFEE0 for at in range(0xFF01, 0xFF5F)}
 _PLAIN_SIGNS: dict[int, int | str] = {**_WIDE, **DASHES, **dict.fromkeys(map(ord, "\u2019\u02bc"), "'")}
 _NUMBER = re.compile(
@@ -299,7 +296,6 @@ _PLAIN = re.compile(r"\d+(?:[.,]\d*)?|[.,]\d+", re.ASCII)
 _GROUPED = re.compile(
     r"([1-9]\d{0,2}(?P<mark>[ ',.])\d{3}(?:(?P=mark)\d{3})*)(?:(?P<point>[.,])(?P<rest>\d*))?", re.ASCII
 )
-
 _ARABIC = re.compile(r"MMI ?(\d{1,2})(|,.*)", re.ASCII | re.IGNORECASE)
 _ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X", "XI", "XII")
 
