@@ -73,7 +73,7 @@ def test_every_text_of_the_page_is_found_where_its_modules_name_it(served):
         len(re.findall(r"(?<![\w$.])(?<!function )tn?\(", path.read_text(encoding="utf-8")))
         for path in texts.PAGE.rglob("*.mjs")
     )
-    found = [found for path in texts.PAGE.rglob("*.mjs") for found in texts._scan(path)]
+    found = texts.list_texts()
     assert len(found) == called > 100
     italian = served().client.get("/api/texts?language=it").json()
     assert (italian["decimal"], italian["group"], italian["texts"]["low"]) == (",", ".", "basso")
