@@ -152,12 +152,9 @@ METHOD = Method(
         ),
         Reason(
             "FEMA P-58 depends on velocity only: PFV is {pfv_cm_s} cm/s, its median for such pieces {median_pfv_cm_s} "
-            "cm/s.",
+            "cm/s."
         ),
-        Reason(
-            "B/H {breadth_to_height} lies outside that of the published medians of FEMA P-58.",
-            flag="extrapolated",
-        ),
+        Reason("B/H {breadth_to_height} lies outside that of the published medians of FEMA P-58.", flag="extrapolated"),
     ),
     equations=(
         "P = Φ(ln(PFV/PFV50)/β), β = 0.5;  PFV50 = V_imp/[2.31 - 0.41 ln(100 β_e)]",

@@ -218,10 +218,7 @@ def build_method(model: Fitted, source: str) -> Method:
             name=model.title,
             data=data if len(data) <= LONGEST else f"{data[: LONGEST - 1]}…",
         ),
-        short_title=model.title,
-        kind="probability",
-        order=LAST,
-        predicts=BY_SIZE if is_probit else BY_RATIO,
+        short_title=model.title, kind="probability", order=LAST, predicts=BY_SIZE if is_probit else BY_RATIO,
         reference=Reference(authors="", year="", title=model.title, source=source, remark=join(" ", (errors, verdict))),
         needs=frozenset({"breadth", "height", "pfa", *(("pfv",) if is_probit else ())}),
         valid={
@@ -240,7 +237,7 @@ def build_method(model: Fitted, source: str) -> Method:
             Reason(BEYOND, flag="extrapolated"),
         ),
         fitted=fitted,
-    )
+    )  # fmt: skip
 
 
 def _work(equations: Sequence[str], example: Example) -> list[str]:
@@ -267,10 +264,7 @@ OF_POLYNOMIAL = (
 FLAGS_OF_POLYNOMIAL = {
     "extrapolated": fill("outside the data that it was fitted to, or PFV is unknown, so that it may be outside")
 }
-FLAGS_OF_PROBIT = {
-    "extrapolated": fill("outside the data that it was fitted to"),
-    **PFV_FLAGS,
-}
+FLAGS_OF_PROBIT = {"extrapolated": fill("outside the data that it was fitted to"), **PFV_FLAGS}
 
 
 APPROXIMATES = (
@@ -413,10 +407,8 @@ def parse_model(text: str, file: str) -> Fitted:
         given = _show(found["format"]) if "format" in found else fill("missing")
         raise InputError.about(
             "{file}: format is {value}, expected {expected}. Have a study of this version write the file.",
-            file=file,
-            value=given,
-            expected=FORMAT,
-        )
+            file=file, value=given, expected=FORMAT,
+        )  # fmt: skip
     kind = found.get("kind")
     if not isinstance(kind, str) or kind not in KINDS:
         given = _show(kind) if "kind" in found else fill("missing")

@@ -239,15 +239,13 @@ def steps(example: Example) -> list[Text]:
         else fill(
             "It and the pieces exactly like it on its floor overturned in {k:,} of {draws:,} draws of an earthquake "
             "like this one, {n:,} each.",
-            k=int(k),
-            draws=int(draws),
-            n=int(n),
+            k=int(k), draws=int(draws), n=int(n),
         ),
         show("R = k/n", number(k, ".0f") / number(draws, ".0f"), ".4f"),
         show("R_low", wilson_end(share, runs, width, is_high=False), ".4f"),
         show("R_high", wilson_end(share, runs, width, is_high=True), ".4f"),
         fill("The 95 % interval reaches from {low:.4f} to {high:.4f} (Wilson, z = {z:.2f}).", **numbers),
-    ]
+    ]  # fmt: skip
     fallen, fell = example.number("ideal_overturned"), example.number("record_overturned")
     if not math.isnan(fallen):  # what is drawn cannot recur
         found.append(
@@ -348,7 +346,7 @@ METHOD = Method(
     reasons=(
         Reason(
             "Direct integration follows each piece through whole motions of the floor, with its size. Draws that "
-            "overturn it: {overturned} of {draws}.",
+            "overturn it: {overturned} of {draws}."
         ),
         Reason(
             "PFA {pfa_g} g is {pfa_to_start} times g·B/H, above which a uniform block can start to rock; the draws "

@@ -126,9 +126,7 @@ BY_SIZE = (
 )
 CLIPPED = "the formula gave less than 0 or more than 1, and was set to 0 or 1"
 """What several methods assume, predict, and flag."""
-PFV_FLAGS: Mapping[str, str] = {
-    "pfv_unknown": "not evaluated: it needs the peak floor velocity, which is unknown here",
-}
+PFV_FLAGS: Mapping[str, str] = {"pfv_unknown": "not evaluated: it needs the peak floor velocity, which is unknown here"}
 """The flag of methods that depend on velocity, and what it means."""
 
 

@@ -210,7 +210,7 @@ METHOD = Method(
         ),
         Reason(
             "The proposed formula depends on B/H {breadth_to_height} and PFA {pfa_g} g only and gives {value}, "
-            "whatever the size of the piece and the velocity of the floor.",
+            "whatever the size of the piece and the velocity of the floor."
         ),
         Reason(
             "B/H {breadth_to_height} is below the range of the proposed formula: its value is that of the B/H of "

@@ -263,11 +263,9 @@ def _correct(
     most, own = np.log(MOST_CORRECTED), np.searchsorted(places, chosen)
     applied = np.where(errors[chosen] > 0, RAISED, LOWERED)
     correction = Correction(
-        wavelets=build_wavelets(tuple(target.periods), grid.time_step),
-        places=chosen,
-        shares=np.expm1(np.clip(applied * errors[chosen], -most, most)).astype(np.float32),
-        sweep=sweep.take(chosen),
-    )
+        wavelets=build_wavelets(tuple(target.periods), grid.time_step), places=chosen,
+        shares=np.expm1(np.clip(applied * errors[chosen], -most, most)).astype(np.float32), sweep=sweep.take(chosen),
+    )  # fmt: skip
     bench.run(lambda rows: correction.add(motions[rows], peaks[rows, own], when[rows, own]), len(motions))
     return [correction]
 

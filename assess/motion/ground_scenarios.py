@@ -121,10 +121,7 @@ class GroundScenarios:
                 )
             )
         return SiteGround(
-            kind="scenarios",
-            file=self.file,
-            sha256=self.hashes[0],
-            pga=medians["gmv_PGA"] * GRAVITY,
+            kind="scenarios", file=self.file, sha256=self.hashes[0], pga=medians["gmv_PGA"] * GRAVITY,
             pgv=medians["gmv_PGV"] / 100 if "gmv_PGV" in medians else None,
             psa=tuple((period, medians[name] * GRAVITY) for name, period in _list_psa(self.measures)),
             dispersion=dispersion,
@@ -142,7 +139,7 @@ class GroundScenarios:
                 (fill("File of sites"), fill("{file}, SHA-256 {sha256}", file=self.sites_file, sha256=self.hashes[1])),
             ),
             cautions=tuple(cautions),
-        )
+        )  # fmt: skip
 
     def __reduce__(self) -> tuple[Any, ...]:
         return read_again, (read_scenarios, self.path, self.sha256)
@@ -203,18 +200,11 @@ def read_scenarios(folder: Path) -> GroundScenarios:
             raise InputError.about("event {event} is there twice at a site", event=int(events[int(again.argmax())]))
     hashes = data.sha256, sites.sha256
     return GroundScenarios(
-        file=VALUES,
-        sha256=hashlib.sha256("".join(hashes).encode()).hexdigest(),
-        sites_file=sites_file,
-        hashes=hashes,
-        path=folder,
-        latitude=latitude,
-        longitude=longitude,
-        start=np.searchsorted(at, np.arange(len(names) + 1)),
-        values=np.column_stack([data.columns[name][order] for name in measures]),
-        measures=measures,
+        file=VALUES, sha256=hashlib.sha256("".join(hashes).encode()).hexdigest(), sites_file=sites_file, hashes=hashes,
+        path=folder, latitude=latitude, longitude=longitude, start=np.searchsorted(at, np.arange(len(names) + 1)),
+        values=np.column_stack([data.columns[name][order] for name in measures]), measures=measures,
         event_count=int(np.unique(events).size),
-    )
+    )  # fmt: skip
 
 
 def _read_sites(sites: "_Table", key: str) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -173,11 +173,9 @@ def build_wavelets(periods: tuple[float, ...], time_step: float) -> Wavelets:
         shapes.append(shape)
         found.append(Sweep.of(np.array([period]), time_step, shape.size).peaks(padded))
     return Wavelets(
-        samples=np.concatenate(shapes),
-        start=np.concatenate([[0], np.cumsum([shape.size for shape in shapes])]),
-        peak=np.array([peak[0, 0] for peak, _ in found]),
-        at=np.array([at[0, 0] for _, at in found], dtype=np.int64),
-    )
+        samples=np.concatenate(shapes), start=np.concatenate([[0], np.cumsum([shape.size for shape in shapes])]),
+        peak=np.array([peak[0, 0] for peak, _ in found]), at=np.array([at[0, 0] for _, at in found], dtype=np.int64),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, eq=False)

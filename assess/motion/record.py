@@ -254,11 +254,8 @@ def treatment(record: Record, baseline: Baseline = "standard") -> Text:
     return fill(
         "Uncorrected: mean removed, then a Butterworth high-pass at {corner:g} Hz without phase shift (order {order} "
         "forward and again backward: order {in_effect} in effect; {pad:g} s of zeros at each end while filtering).",
-        corner=CORNER,
-        order=PASS_ORDER,
-        in_effect=PASS_ORDER * PASSES,
-        pad=PAD,
-    )
+        corner=CORNER, order=PASS_ORDER, in_effect=PASS_ORDER * PASSES, pad=PAD,
+    )  # fmt: skip
 
 
 def _integral(values: FloatArray, time_step: float) -> FloatArray:
@@ -322,18 +319,14 @@ def _even_out(times: FloatArray, values: FloatArray, notes: tuple[str, ...]) -> 
     note = fill(
         "unevenly sampled (median step {median:.3g} s): resampled linearly to {step:g} s, which changes the peak by "
         "{change:+.2f} %",
-        median=median,
-        step=RESAMPLED_STEP,
-        change=100 * (peak(resampled) / peak(values) - 1),
-    )
+        median=median, step=RESAMPLED_STEP, change=100 * (peak(resampled) / peak(values) - 1),
+    )  # fmt: skip
     gaps, longest = int((steps > max(GAP, 2 * median)).sum()), int(steps.argmax())
     bridged = nfill(
         "a gap of {long:.3g} s at {at:.5g} s is bridged by a straight line",
         "{n} gaps, the longest of {long:.3g} s at {at:.5g} s, are bridged by straight lines",
-        gaps,
-        long=float(steps[longest]),
-        at=float(times[longest]),
-    )
+        gaps, long=float(steps[longest]), at=float(times[longest]),
+    )  # fmt: skip
     return Series(RESAMPLED_STEP, resampled, (*notes, note, *((bridged,) if gaps else ())))
 
 
@@ -373,7 +366,5 @@ def check_time_step(time_step: float) -> None:
     if not SHORTEST_STEP <= time_step <= LONGEST_STEP:
         raise RecordError.about(
             "the time step is {step:.4g} s, expected {shortest:g} to {longest:g} s: is the time in seconds?",
-            step=time_step,
-            shortest=SHORTEST_STEP,
-            longest=LONGEST_STEP,
-        )
+            step=time_step, shortest=SHORTEST_STEP, longest=LONGEST_STEP,
+        )  # fmt: skip

@@ -129,8 +129,6 @@ def _read_suite(folder: Path, paths: list[Path], progress: Progress) -> Suite:
             )
         )
     return Suite(
-        folder=folder.name,
-        motions=tuple(sorted(motions, key=lambda one: (one[1].time_step, one[0]))),
-        files={path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in found},
-        notes=tuple(notes),
-    )
+        folder=folder.name, motions=tuple(sorted(motions, key=lambda one: (one[1].time_step, one[0]))),
+        files={path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in found}, notes=tuple(notes),
+    )  # fmt: skip

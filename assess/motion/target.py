@@ -154,10 +154,6 @@ def recorded_target(motion: Motion, grid: Grid) -> Target:
     acceleration = put_on_grid(motion, grid)
     periods = build_periods(SHORTEST, LONGEST, COUNT)
     return Target(
-        periods=periods,
-        pseudo=response_spectrum(acceleration, grid.time_step, periods).pseudo,
-        pfa=motion.pfa,
-        pfv=motion.pfv,
-        envelopes=husid_envelopes(acceleration, grid.time_step),
-        acceleration=acceleration,
-    )
+        periods=periods, pseudo=response_spectrum(acceleration, grid.time_step, periods).pseudo, pfa=motion.pfa,
+        pfv=motion.pfv, envelopes=husid_envelopes(acceleration, grid.time_step), acceleration=acceleration,
+    )  # fmt: skip

@@ -94,16 +94,11 @@ def measure_match(
     deviation = mean / wanted - 1
     worst, (pfa, pfv, end) = int(np.abs(deviation).argmax()), peaks.T
     fit = Fit(
-        count=len(pseudo),
-        matched_to=wanted_to,
-        mean_deviation=float(np.abs(deviation).mean()),
-        worst_deviation=float(deviation[worst]),
-        worst_period=float(periods[worst]),
-        pfa_ratio=float(pfa.mean() / target.pfa),
-        pfa_scatter=float(pfa.std() / pfa.mean()),
-        pfv_ratio=float(pfv.mean() / target.pfv),
-        pfv_scatter=float(pfv.std() / pfv.mean()),
+        count=len(pseudo), matched_to=wanted_to, mean_deviation=float(np.abs(deviation).mean()),
+        worst_deviation=float(deviation[worst]), worst_period=float(periods[worst]),
+        pfa_ratio=float(pfa.mean() / target.pfa), pfa_scatter=float(pfa.std() / pfa.mean()),
+        pfv_ratio=float(pfv.mean() / target.pfv), pfv_scatter=float(pfv.std() / pfv.mean()),
         spectrum_scatter=float((pseudo.std(axis=0, dtype=np.float64) / mean).mean()),
         drift=float((np.abs(end) / pfv).max()),
-    )
+    )  # fmt: skip
     return fit, Spectra(periods=periods, ordinates=pseudo, target=wanted)

@@ -175,17 +175,12 @@ def follow_body(
     end = (np.size(acceleration) - 1) * time_step
     ends = [end] if not found.overturned[0, 0] and (not len(trace) or trace[-1, 0] < end) else []
     return Response(
-        critical_angle=float(numbers[0]),
-        frequency_parameter=float(numbers[1]),
-        restitution=float(numbers[2]),
-        overturned=bool(found.overturned[0, 0]),
-        rotation=float(found.rotation[0, 0]),
-        fall_time=float(found.fall_time[0, 0]),
-        impacts=int(found.impacts[0, 0]),
+        critical_angle=float(numbers[0]), frequency_parameter=float(numbers[1]), restitution=float(numbers[2]),
+        overturned=bool(found.overturned[0, 0]), rotation=float(found.rotation[0, 0]),
+        fall_time=float(found.fall_time[0, 0]), impacts=int(found.impacts[0, 0]),
         times=np.concatenate([[0.0], trace[:, 0], ends]),
-        theta=np.concatenate([[0.0], trace[:, 1], np.zeros(len(ends))]),
-        impact_times=trace[struck, 0],
-    )
+        theta=np.concatenate([[0.0], trace[:, 1], np.zeros(len(ends))]), impact_times=trace[struck, 0],
+    )  # fmt: skip
 
 
 def _check_motions(
@@ -206,13 +201,7 @@ def _check_motions(
 
 
 def _rock(
-    body: FloatArray,
-    across: FloatArray,
-    up: FloatArray,
-    time_step: float,
-    away: Away,
-    state: FloatArray,
-    points: int,
+    body: FloatArray, across: FloatArray, up: FloatArray, time_step: float, away: Away, state: FloatArray, points: int
 ) -> FloatArray:
     """Integrate one body and fill its `state`; returns `points` points of its path, (t, 3)."""
     trace = np.zeros((points, 3))

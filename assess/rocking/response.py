@@ -76,15 +76,10 @@ def follow_block(
     return Response(
         critical_angle=float(blocks[0, 0, 0]),
         frequency_parameter=float(block.frequency_parameter(breadth, height, centre)),
-        restitution=float(body.restitution[0, 0]),
-        overturned=fall >= 0,
-        rotation=rotation,
-        fall_time=fall * step if fall >= 0 else math.nan,
-        impacts=int(struck),
-        times=times * step,
-        theta=theta,
+        restitution=float(body.restitution[0, 0]), overturned=fall >= 0, rotation=rotation,
+        fall_time=fall * step if fall >= 0 else math.nan, impacts=int(struck), times=times * step, theta=theta,
         impact_times=impact_times * step,
-    )
+    )  # fmt: skip
 
 
 def _build_path(

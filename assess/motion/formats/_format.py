@@ -97,23 +97,10 @@ def build_record(
             )
         )
     return Record(
-        file="",
-        format="",
-        channel=channel or "1",
-        location=location,
-        azimuth_deg=direction[0],
-        vertical=direction[1],
-        station=station,
-        event=event,
-        start=start,
-        corrected=corrected,
-        time_step=series.time_step,
-        acceleration=series.values,
-        file_pfa=file_pfa,
-        header_pfa=header_pfa,
-        notes=tuple(notes),
-        recorder=recorder,
-    )
+        file="", format="", channel=channel or "1", location=location, azimuth_deg=direction[0], vertical=direction[1],
+        station=station, event=event, start=start, corrected=corrected, time_step=series.time_step,
+        acceleration=series.values, file_pfa=file_pfa, header_pfa=header_pfa, notes=tuple(notes), recorder=recorder,
+    )  # fmt: skip
 
 
 def read_real(text: str) -> float | None:

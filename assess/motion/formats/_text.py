@@ -161,11 +161,9 @@ def text_format(
         return keep_readable(numbered, read_channel)
 
     return Format(
-        key=key,
-        title=title,
-        recognises=lambda head: recognised.match(with_line_feeds(head.decode("latin-1"))) is not None,
-        parse=parse,
-    )
+        key=key, title=title,
+        recognises=lambda head: recognised.match(with_line_feeds(head.decode("latin-1"))) is not None, parse=parse,
+    )  # fmt: skip
 
 
 Fields = Sequence[tuple[range, re.Pattern[str]]]

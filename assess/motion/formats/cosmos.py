@@ -41,10 +41,7 @@ HEADER = fields(
     (1, r"(?P<event>.*)"),
     (4, r"^statn\s+no:\s*(?P<number>\S+)\s+code:\s*(?P<code>\S*)\s*(?P<station>.*)"),
     (7, r"^rcrd start time:\s*(?P<start>\S+,?\s*[\d:.]+(?:\s+[A-Z]+\b)?)"),
-    (
-        8,
-        r"^sta\s+cha\w*:?\s*(?P<channel>\w+)\s*:\s*(?P<direction>.*?)\s*\(.*?\)\s*(?:location:\s*(?P<location>.*))?",
-    ),
+    (8, r"^sta\s+cha\w*:?\s*(?P<channel>\w+)\s*:\s*(?P<direction>.*?)\s*\(.*?\)\s*(?:location:\s*(?P<location>.*))?"),
     (10, rf"\bmax\s*=\s*(?P<peak>[-+]?{NUMBER})\s*(?P<peak_unit>[^\s,]+)"),
 )
 
@@ -111,16 +108,12 @@ def _read_channel(lines: Lines) -> Record:
         azimuth, vertical = integers[AZIMUTH], False
     station = header["code"] or header["number"]
     return build_record(
-        even_series(values, step),
-        corrected=integers[STAGE] == CORRECTED,
-        channel=header["channel"] and (header["channel"].lstrip("0") or "0"),
-        direction=(azimuth, vertical),
-        location=header["location"],
-        station=f"{header['station']} ({station})" if station else "",
-        event=" ".join(header["event"].split()),
-        start=header["start"],
+        even_series(values, step), corrected=integers[STAGE] == CORRECTED,
+        channel=header["channel"] and (header["channel"].lstrip("0") or "0"), direction=(azimuth, vertical),
+        location=header["location"], station=f"{header['station']} ({station})" if station else "",
+        event=" ".join(header["event"].split()), start=header["start"],
         header_pfa=read_peak(header["peak"], read_acceleration_unit(header["peak_unit"])),
-    )
+    )  # fmt: skip
 
 
 FORMAT = text_format(

@@ -129,17 +129,11 @@ def _build(
     """
     number = text["drawn_as"] or text["number"]
     return build_record(
-        series,
-        own=own,
-        corrected=corrected,
-        channel=number and (number.lstrip("0") or "0"),
-        direction=read_direction(text["direction"]),
-        location=text["location"],
+        series, own=own, corrected=corrected, channel=number and (number.lstrip("0") or "0"),
+        direction=read_direction(text["direction"]), location=text["location"],
         station=f"{text['station']} ({text['station_number']})" if text["station_number"] else text["station"],
-        event=text["event"],
-        start=text["start"] or text["date"],
-        header_pfa=header_pfa,
-    )
+        event=text["event"], start=text["start"] or text["date"], header_pfa=header_pfa,
+    )  # fmt: skip
 
 
 def _refuse_spectra(channels: list[Lines]) -> list[Lines]:

@@ -56,15 +56,11 @@ def _read_channel(lines: Lines) -> Record:
         factor = multiple * unit
     own = read_columns(lines, DATA, int(count), COLUMNS, factor)
     return build_record(
-        even_series(own, _read_number(lines, *STEP)),
-        corrected=corrected,
-        channel=header["component"],
+        even_series(own, _read_number(lines, *STEP)), corrected=corrected, channel=header["component"],
         direction=read_direction(header["component"]),
         station=f"{header['station']} ({header['site']})" if header["site"] else header["station"],
-        event=header["event"],
-        start=" ".join(header["start"].split()),
-        header_pfa=header_pfa,
-    )
+        event=header["event"], start=" ".join(header["start"].split()), header_pfa=header_pfa,
+    )  # fmt: skip
 
 
 def _read_number(lines: Lines, line: int, column: int) -> float:

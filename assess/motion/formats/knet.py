@@ -52,17 +52,11 @@ def _read_channel(lines: Lines) -> Record:
         start = f"{time:%Y-%m-%d %H:%M:%S} JST"
     channel = _CHANNELS.get(direction.lower(), direction)
     return build_record(
-        even_series(values, 1 / rate, notes),
-        corrected=False,
-        channel=channel,
-        direction=read_direction(channel),
-        location={"1": "borehole", "2": "surface"}.get(channel[2:], ""),
-        station=header.get("Station Code", ""),
-        event=f"{header.get('Origin Time', '')} M{header.get('Mag.', '')}",
-        start=start,
-        header_pfa=read_peak(header.get("Max. Acc. (gal)", ""), GAL),
-        has_offset=True,
-    )
+        even_series(values, 1 / rate, notes), corrected=False, channel=channel, direction=read_direction(channel),
+        location={"1": "borehole", "2": "surface"}.get(channel[2:], ""), station=header.get("Station Code", ""),
+        event=f"{header.get('Origin Time', '')} M{header.get('Mag.', '')}", start=start,
+        header_pfa=read_peak(header.get("Max. Acc. (gal)", ""), GAL), has_offset=True,
+    )  # fmt: skip
 
 
 def _number(header: dict[str, str], key: str) -> float:

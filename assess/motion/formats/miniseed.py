@@ -182,17 +182,11 @@ def _read_channel(parts: Sequence[_Part], notes: Sequence[str], whole_name: bool
         )
     series, own = _join(parts)
     return build_record(
-        replace(series, notes=(*notes, *series.notes)),
-        own=own,
-        corrected=False,
-        channel=".".join(parts[0].names) if whole_name else code,
-        direction=read_direction(code, bare_degrees=False),
-        location=location,
-        station=".".join(filter(None, (network, station))),
-        start=f"{parts[0].start.isoformat(sep=' ', timespec='milliseconds')} UTC",
-        has_offset=True,
-        notes=(_TAKEN,),
-    )
+        replace(series, notes=(*notes, *series.notes)), own=own, corrected=False,
+        channel=".".join(parts[0].names) if whole_name else code, direction=read_direction(code, bare_degrees=False),
+        location=location, station=".".join(filter(None, (network, station))),
+        start=f"{parts[0].start.isoformat(sep=' ', timespec='milliseconds')} UTC", has_offset=True, notes=(_TAKEN,),
+    )  # fmt: skip
 
 
 def _join(parts: Sequence[_Part]) -> tuple[Series, FloatArray]:

@@ -56,13 +56,9 @@ def _read_channel(lines: Lines) -> Record:
         event = f"{event}, {others.pop(0)}"
     component = others.pop().split("(")[0].strip() if others else ""
     return build_record(
-        even_series(values, step, notes),
-        corrected=True,
-        channel=component,
-        direction=read_direction(component),
-        station=", ".join(others),
-        event=event,
-    )
+        even_series(values, step, notes), corrected=True, channel=component, direction=read_direction(component),
+        station=", ".join(others), event=event,
+    )  # fmt: skip
 
 
 FORMAT = text_format(

@@ -249,10 +249,8 @@ def _read_block(block: bytes, table: _Table, first: int) -> FloatArray:
         if len(cells) != width:
             raise RecordError.about(
                 "line {line}: the number of cells is {cells}, but there are {headings} headings",
-                line=line,
-                cells=len(cells),
-                headings=width,
-            )
+                line=line, cells=len(cells), headings=width,
+            )  # fmt: skip
         for cell in cells:
             number = cell if separator == "," else cell.replace(",", ".")
             if not _NUMBER.fullmatch(number):

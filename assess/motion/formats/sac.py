@@ -98,24 +98,15 @@ def parse(data: bytes) -> tuple[Record, ...]:
     start, begin = "", header.reals["begin"] or 0.0  # B is counted from the reference time
     with suppress(ValueError, OverflowError):  # a date that cannot be
         reference = datetime(numbers["year"], 1, 1) + timedelta(
-            days=numbers["day"] - 1,
-            hours=numbers["hour"],
-            minutes=numbers["minute"],
-            seconds=numbers["second"] + begin,
-            milliseconds=numbers["millisecond"],
-        )
+            days=numbers["day"] - 1, hours=numbers["hour"], minutes=numbers["minute"],
+            seconds=numbers["second"] + begin, milliseconds=numbers["millisecond"],
+        )  # fmt: skip
         start = f"{reference.isoformat(sep=' ', timespec='milliseconds')} UTC"
     record = build_record(
-        series,
-        corrected=False,
-        channel=header.texts["channel"],
-        direction=direction,
-        location=header.texts["place"],
-        station=".".join(filter(None, (header.texts["network"], header.texts["station"]))),
-        event=header.texts["event"],
-        start=start,
-        has_offset=True,
-    )
+        series, corrected=False, channel=header.texts["channel"], direction=direction, location=header.texts["place"],
+        station=".".join(filter(None, (header.texts["network"], header.texts["station"]))), event=header.texts["event"],
+        start=start, has_offset=True,
+    )  # fmt: skip
     return (record,)
 
 

@@ -99,19 +99,12 @@ def _read_channel(lines: Lines) -> Record:
         date = f"{header['year']}-{int(header['month']):02d}-{int(header['day']):02d}"
         start = f"{date} {header['hour']}:{header['minute']} UTC"
     record = build_record(
-        series,
-        own=own,
-        corrected=kind == "2",
-        channel=header["component"],
-        direction=direction,
+        series, own=own, corrected=kind == "2", channel=header["component"], direction=direction,
         location=place[1].strip() if place else "" if floor is None else f"floor {floor}",
         station=header["station"] or header["bare_station"].strip(" *"),
-        event=header["event"] if header["year"] else header["earthquake"].strip(" *"),
-        start=start,
-        header_pfa=read_peak(header["peak"], CM_S2),
-        notes=notes,
-        recorder="" if number is None else str(number),
-    )
+        event=header["event"] if header["year"] else header["earthquake"].strip(" *"), start=start,
+        header_pfa=read_peak(header["peak"], CM_S2), notes=notes, recorder="" if number is None else str(number),
+    )  # fmt: skip
     if integers[PROBLEM] != 1:
         return record
     return replace(record, notes=(*record.notes, fill("the header flags a problem with the data: read its comments")))
@@ -170,9 +163,7 @@ def _read_data(lines: Lines, announced: int, first: int) -> tuple[FloatArray, tu
     wide = next((place for place in np.flatnonzero(rows.lengths > LINE).tolist() if rows[place][LINE:].strip()), None)
     if wide is not None:
         raise RecordError.about(
-            "line {line} is longer than {most} characters. Get the file again",
-            line=rows.number(wide),
-            most=LINE,
+            "line {line} is longer than {most} characters. Get the file again", line=rows.number(wide), most=LINE
         )
     there = sum(int(has_text(cells).sum()) for cells in rows.cut(DATA, is_whole=True))
     notes = compare_counts(announced, there)
