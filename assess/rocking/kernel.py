@@ -106,7 +106,15 @@ def rock(
         marked = _step(state, count, samples)
         for lane in range(LANES if marked else 0):
             if state[MARK + lane] > 0.0 and _attend(state, count, lane, motions, crests):
-                _put(state, count, lane, motions.shape[1], outcome)
+                motion = count[MOTION + lane]
+                one = outcome[count[BLOCK + lane], motion]
+                one[ROTATION], one[STRUCK] = state[PEAK + lane] / state[ALPHA + lane], count[IMPACTS + lane]
+                one[FALL] = -1.0
+                if state[PHI + lane] >= OVERTURNED:
+                    passed = (OVERTURNED - state[START + lane]) / (state[PHI + lane] - state[START + lane])
+                    one[ROTATION] = OVERTURNED / state[ALPHA + lane]
+                    step = count[AT + lane] + count[AFTER + lane] + 1 - count[STRIDE + lane]  # the end of the last one
+                    one[FALL] = step - motion * motions.shape[1] - state[SPAN + lane] * (1.0 - passed)
                 pair = _take(state, count, lane, pair, end, blocks, motions, crests)
                 live -= count[BLOCK + lane] < 0
         if traced < len(trace) and count[BLOCK] >= 0:
@@ -235,8 +243,8 @@ def _attend(
     s: FloatArray, count: IntArray, lane: int, motions: FloatArray, crests: FloatArray
 ) -> bool:  # pragma: no cover
     """See to what is rare in a lane's last step; True once its pair is decided."""
-    if s[D1 + lane] > 0.0 and s[START + lane] + s[D1 + lane] > s[PEAK + lane]:
-        s[PEAK + lane] = max(s[PEAK + lane], _find_peak(s, lane))
+    if s[VELOCITY + lane] <= 0.0 < s[D1 + lane] and s[START + lane] + s[D1 + lane] > s[PEAK + lane]:  # it turns back
+        s[PEAK + lane] = max(s[PEAK + lane], _follow(s, lane, _find_turn(s, lane))[0])
     lifts = s[D1 + lane] > 0.0 or s[D2 + lane] > 0.0
     if s[START + lane] == 0.0 and not lifts and s[PHI + lane] < 0.0:  # it has not left the ground
         return not _start(s, count, lane, motions, crests)
@@ -246,7 +254,19 @@ def _attend(
             return not _start(s, count, lane, motions, crests)
     elif s[PHI + lane] >= OVERTURNED:
         return True
-    return s[LEFT + lane] <= 0.0 and _settle(s, count, lane)
+    if s[LEFT + lane] > 0.0:
+        return False
+    # After the end of a motion: it is decided if it can no longer fall; its next peak counts. Else it is carried on.
+    phi, velocity, alpha, pp = s[PHI + lane], s[VELOCITY + lane], s[ALPHA + lane], s[PP + lane]
+    energy, level = velocity * velocity / 2 + pp * math.cos(alpha - phi), pp * math.cos(alpha)
+    # What is left of it on the way to its next peak, which is on the other edge if it is falling back now.
+    after = level + s[ETA + lane] ** 2 * (energy - level) if velocity < 0.0 else energy
+    if phi < alpha and energy < pp:
+        s[PEAK + lane] = max(s[PEAK + lane], alpha - math.acos(min(1.0, after / pp)))
+        return True
+    count[AFTER + lane] += count[STRIDE + lane] == 0
+    s[LEFT + lane], count[STRIDE + lane] = 1.0, 0
+    return bool(count[AFTER + lane] > MOST_AFTER)
 
 
 @compiled_into
@@ -272,13 +292,6 @@ def _find_turn(s: FloatArray, lane: int) -> float:  # pragma: no cover
         if change < 1e-12:
             break
     return float(u)
-
-
-@compiled_into
-def _find_peak(s: FloatArray, lane: int) -> float:  # pragma: no cover
-    """Return the largest angle within a lane's last step, in which it turns back; 0 if it does not."""
-    turns = s[VELOCITY + lane] <= 0.0 < s[D1 + lane]
-    return float(_follow(s, lane, _find_turn(s, lane))[0]) if turns else 0.0
 
 
 @compiled_into
@@ -324,30 +337,3 @@ def _strike(s: FloatArray, count: IntArray, lane: int, place: float) -> bool:  #
     here = s[EDGE + lane] * (s[A0 + lane] + done * (s[A1 + lane] - s[A0 + lane]))
     back = s[PP + lane] * s[COS + lane] * (tan + here)
     return bool(velocity * velocity < 2.0 * back * REST * alpha)
-
-
-@compiled_into
-def _settle(s: FloatArray, count: IntArray, lane: int) -> bool:  # pragma: no cover
-    """After the end of a motion: True if a block can no longer fall; its next peak counts. Else it is carried on."""
-    phi, velocity, alpha, pp = s[PHI + lane], s[VELOCITY + lane], s[ALPHA + lane], s[PP + lane]
-    energy, level = velocity * velocity / 2 + pp * math.cos(alpha - phi), pp * math.cos(alpha)
-    # What is left of it on the way to its next peak, which is on the other edge if it is falling back now.
-    after = level + s[ETA + lane] ** 2 * (energy - level) if velocity < 0.0 else energy
-    if phi < alpha and energy < pp:
-        s[PEAK + lane] = max(s[PEAK + lane], alpha - math.acos(min(1.0, after / pp)))
-        return True
-    count[AFTER + lane] += count[STRIDE + lane] == 0
-    s[LEFT + lane], count[STRIDE + lane] = 1.0, 0
-    return bool(count[AFTER + lane] > MOST_AFTER)
-
-
-@compiled_into
-def _put(s: FloatArray, count: IntArray, lane: int, width: int, outcome: FloatArray) -> None:  # pragma: no cover
-    motion = count[MOTION + lane]
-    one = outcome[count[BLOCK + lane], motion]
-    one[ROTATION], one[STRUCK], one[FALL] = s[PEAK + lane] / s[ALPHA + lane], count[IMPACTS + lane], -1.0
-    if s[PHI + lane] >= OVERTURNED:
-        passed = (OVERTURNED - s[START + lane]) / (s[PHI + lane] - s[START + lane])
-        one[ROTATION] = OVERTURNED / s[ALPHA + lane]
-        step = count[AT + lane] + count[AFTER + lane] + 1 - count[STRIDE + lane]  # the end of the last one
-        one[FALL] = step - motion * width - s[SPAN + lane] * (1.0 - passed)

@@ -62,10 +62,14 @@ def rock(
     last, tan = horizontal.size - 2, math.tan(body[ALPHA])
     for at in range(last + MOST_AFTER):
         place = min(at, last)
-        if state[RESTS] > 0.0 and _rests(horizontal, vertical, place, tan):
-            if at >= last - 1:
-                return
-            continue
+        if state[RESTS] > 0.0:
+            # Where no edge lifts at either end of a sample, none does in it: most samples of most motions.
+            first = abs(horizontal[place]) - tan * (1.0 + vertical[place])
+            final = abs(horizontal[place + 1]) - tan * (1.0 + vertical[place + 1])
+            if max(first, final) <= 0.0:
+                if at >= last - 1:
+                    return
+                continue
         ground = (horizontal[place], horizontal[place + 1], vertical[place], vertical[place + 1])
         state[DONE] = 0.0
         while state[DONE] < time_step * (1.0 - SHORTEST):
@@ -80,16 +84,17 @@ def rock(
             if state[PHI] >= OVERTURNED:
                 state[FALL] = at * time_step + state[DONE]
                 return
-        if at >= last - 1 and (state[RESTS] > 0.0 or _is_safe(body, state, away)):
+        if at < last - 1:
+            continue
+        if state[RESTS] > 0.0:
             return
-
-
-@compiled_into
-def _rests(horizontal: FloatArray, vertical: FloatArray, place: int, tan: float) -> bool:  # pragma: no cover
-    """Tell whether no edge lifts at either end of a sample, and so nowhere in it: most samples of most motions."""
-    first = abs(horizontal[place]) - tan * (1.0 + vertical[place])
-    last = abs(horizontal[place + 1]) - tan * (1.0 + vertical[place + 1])
-    return bool(max(first, last) <= 0.0)
+        # The floor is at rest: a body is done with once it can no longer fall; its next peak counts.
+        pp, factor = body[P] ** 2, body[ETA] if away == 0 else body[REBOUND]
+        energy, level = state[VELOCITY] ** 2 / 2.0 + pp * math.cos(body[ALPHA] - state[PHI]), pp * math.cos(body[ALPHA])
+        if state[PHI] < body[ALPHA] and energy < pp:
+            after = level + factor**2 * (energy - level) if state[VELOCITY] < 0.0 else energy
+            state[PEAK] = max(state[PEAK], body[ALPHA] - math.acos(min(1.0, after / pp)))
+            return
 
 
 @compiled_into
@@ -150,7 +155,16 @@ def _step(
     elif event == FALLS:
         state[PHI] = OVERTURNED
     elif event == STRIKES:
-        _strike(body, state, ground, state[DONE] / time_step, away)
+        factor, share = body[ETA] if away == 0 else body[REBOUND], state[DONE] / time_step
+        state[VELOCITY], state[PHI] = factor * max(0.0, -state[VELOCITY]), 0.0
+        state[EDGE] = -state[EDGE] if away == 0 else state[EDGE]
+        state[IMPACTS] += 1.0
+        # As long as its weight brings it back, the next hop is v2 / 2 f high.
+        h = state[EDGE] * (ground[0] + share * (ground[1] - ground[0]))
+        w = 1.0 + ground[2] + share * (ground[3] - ground[2])
+        back = body[P] ** 2 * (w * math.sin(body[ALPHA]) + h * math.cos(body[ALPHA]))
+        if state[VELOCITY] ** 2 < 2.0 * back * REST * body[ALPHA]:
+            state[VELOCITY], state[RESTS] = 0.0, 1.0
 
 
 @compiled_into
@@ -238,31 +252,3 @@ def _evaluate(path: FloatArray, order: int, u: float) -> tuple[float, float]:  #
         slope = slope * u + value
         value = value * u + factor * path[power]
     return value, slope
-
-
-@compiled_into
-def _strike(
-    body: FloatArray, state: FloatArray, ground: tuple[float, float, float, float], share: float, away: int
-) -> None:  # pragma: no cover
-    factor = body[ETA] if away == 0 else body[REBOUND]
-    state[VELOCITY], state[PHI] = factor * max(0.0, -state[VELOCITY]), 0.0
-    state[EDGE] = -state[EDGE] if away == 0 else state[EDGE]
-    state[IMPACTS] += 1.0
-    # As long as its weight brings it back, the next hop is v2 / 2 f high.
-    h = state[EDGE] * (ground[0] + share * (ground[1] - ground[0]))
-    w = 1.0 + ground[2] + share * (ground[3] - ground[2])
-    back = body[P] ** 2 * (w * math.sin(body[ALPHA]) + h * math.cos(body[ALPHA]))
-    if state[VELOCITY] ** 2 < 2.0 * back * REST * body[ALPHA]:
-        state[VELOCITY], state[RESTS] = 0.0, 1.0
-
-
-@compiled_into
-def _is_safe(body: FloatArray, state: FloatArray, away: int) -> bool:  # pragma: no cover
-    """Tell whether a body can no longer fall once the floor is at rest; its next peak counts."""
-    pp, factor = body[P] ** 2, body[ETA] if away == 0 else body[REBOUND]
-    energy, level = state[VELOCITY] ** 2 / 2.0 + pp * math.cos(body[ALPHA] - state[PHI]), pp * math.cos(body[ALPHA])
-    if state[PHI] >= body[ALPHA] or energy >= pp:
-        return False
-    after = level + factor**2 * (energy - level) if state[VELOCITY] < 0.0 else energy
-    state[PEAK] = max(state[PEAK], body[ALPHA] - math.acos(min(1.0, after / pp)))
-    return True

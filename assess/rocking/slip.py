@@ -29,37 +29,28 @@ def slide(motion: FloatArray, scale: float, resistance: float, time_step: float)
         last = scale * motion[at + 1] if at + 1 < motion.size else 0.0
         if velocity == 0.0 and abs(first) <= resistance and abs(last) <= resistance:
             continue
-        place, velocity, peak = _pass_sample(first, last, resistance, time_step, place, velocity, peak)
+        slope, done = (last - first) / time_step, 0.0
+        for _ in range(MOST_PARTS):
+            here = first + slope * done
+            push = abs(here) - resistance
+            side = math.copysign(1.0, velocity)
+            if velocity == 0.0:
+                side = -math.copysign(1.0, here)
+                if push <= 0.0:
+                    if abs(last) <= resistance:
+                        break
+                    done, push, side = (math.copysign(resistance, last) - first) / slope, 0.0, -math.copysign(1.0, last)
+            else:
+                push = -side * here - resistance
+            left, speed, change = time_step - done, abs(velocity), -side * slope
+            length = min(left, _find_stop(speed, push, change))
+            place += side * length * (speed + length * (push / 2.0 + length * change / 6.0))
+            peak = max(peak, abs(place))
+            if length >= left:
+                velocity = side * max(0.0, speed + left * (push + left * change / 2.0))
+                break
+            velocity, done = 0.0, done + length
     return max(peak, abs(place + math.copysign(velocity * velocity / (2.0 * resistance), velocity)))
-
-
-@compiled_into
-def _pass_sample(
-    first: float, last: float, resistance: float, time_step: float, place: float, velocity: float, peak: float
-) -> tuple[float, float, float]:  # pragma: no cover
-    """Return displacement, velocity and largest |displacement| at the end of a sample."""
-    slope, done = (last - first) / time_step, 0.0
-    for _ in range(MOST_PARTS):
-        here = first + slope * done
-        push = abs(here) - resistance
-        side = math.copysign(1.0, velocity)
-        if velocity == 0.0:
-            side = -math.copysign(1.0, here)
-            if push <= 0.0:
-                if abs(last) <= resistance:
-                    break
-                done, push, side = (math.copysign(resistance, last) - first) / slope, 0.0, -math.copysign(1.0, last)
-        else:
-            push = -side * here - resistance
-        left, speed, change = time_step - done, abs(velocity), -side * slope
-        length = min(left, _find_stop(speed, push, change))
-        place += side * length * (speed + length * (push / 2.0 + length * change / 6.0))
-        peak = max(peak, abs(place))
-        if length >= left:
-            velocity = side * max(0.0, speed + left * (push + left * change / 2.0))
-            break
-        velocity, done = 0.0, done + length
-    return place, velocity, peak
 
 
 @compiled_into
