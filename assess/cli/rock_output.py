@@ -16,8 +16,8 @@ from assess.motion.formats import Channel, read_channel, read_channels
 from assess.motion.record import MOST_ACCELERATION, Baseline, Motion, treat, treatment
 from assess.report.figures.draw import draw, thin_out
 from assess.rocking.block import MIDDLE, threshold
+from assess.rocking.ensemble import Response, follow_block
 from assess.rocking.planar import Away, Body, follow_body
-from assess.rocking.response import Response, follow_block
 from assess.rocking.sliding import Branch, branch, critical_friction, is_outside_shenton, peak_slip
 from assess.units import GRAVITY, LENGTH, SHARE, VELOCITY
 

@@ -244,7 +244,7 @@ def _read_table(path: Path, texts: dict[str, int]) -> _Table:
         if len(data) > LARGEST_FILE:
             raise InputError.about("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6)
         if b"\0" in data or data.startswith((b"PK", b"\x89HDF", b"\x1f\x8b", b"\xff\xfe", b"\xfe\xff")):
-            raise InputError(fill("the file is not plain text. Export it from OpenQuake as CSV"))
+            raise InputError.about("the file is not plain text. Export it from OpenQuake as CSV")
         if data.count(b"\n") + data.count(b"\r") > MOST_ROWS:
             raise InputError.about("the file has more than {most:,} rows: keep fewer events or sites", most=MOST_ROWS)
         head: tuple[str, ...] = ()
@@ -259,15 +259,15 @@ def _read_table(path: Path, texts: dict[str, int]) -> _Table:
                 except csv.Error:  # an end of line of its own in the middle
                     raise InputError.about("line {line}: the headings cannot be read", line=line) from None
         if not head:
-            raise InputError(fill("there is no table"))
+            raise InputError.about("there is no table")
         first = line + 1  # that of the first row
         if len(head) > MOST_COLUMNS or len(set(head)) < len(head):
             raise InputError.about("the first row has a heading twice, or more than {most} headings", most=MOST_COLUMNS)
         rows = data[start:]
         if not rows.strip():
-            raise InputError(fill("there are no rows below the headings"))
+            raise InputError.about("there are no rows below the headings")
         if not data.endswith((b"\n", b"\r")):
-            raise InputError(fill("the last line has no end: the file is cut off. Export it again"))
+            raise InputError.about("the last line has no end: the file is cut off. Export it again")
         numbers = _parse_rows(rows, head, first, lambda text: texts.setdefault(text.strip(), len(texts)))
         lines: Sequence[int] = range(first, first + len(numbers))
         if len(lines) < rows.count(b"\n"):  # some are blank
@@ -296,4 +296,4 @@ def _parse_rows(data: bytes, head: Sequence[str], first: int, number_text: Calla
         numbers = [cell for at, cell in enumerate(cells) if at not in texts]
         if (bad := find_no_number(numbers)) >= 0:
             raise InputError.about("line {line}: {text!r} is not a number", line=line, text=numbers[bad].strip()[:40])
-    raise InputError(fill("the rows cannot be read"))
+    raise InputError.about("the rows cannot be read")

@@ -306,10 +306,6 @@ def build_series(times: FloatArray, values: FloatArray) -> Series:
     if np.abs(times - times[0] - np.arange(times.size) * step).max() <= EVEN_WITHIN * step:
         check_time_step(step)
         return Series(step, values, notes)
-    return _even_out(times, values, notes)
-
-
-def _even_out(times: FloatArray, values: FloatArray, notes: tuple[str, ...]) -> Series:
     steps, span = np.diff(times), float(times[-1] - times[0])
     median = float(np.median(steps))
     check_time_step(median)

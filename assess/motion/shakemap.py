@@ -371,7 +371,7 @@ def parse_shakemap(
 def _read_grid(data: bytes) -> Grid:
     grid = _parse_grid(data)
     if "PGA" not in grid.fields:
-        raise InputError(fill("the field PGA is missing: give the file grid.xml of a ShakeMap"))
+        raise InputError.about("the field PGA is missing: give the file grid.xml of a ShakeMap")
     for name in ("PGA", *grid.psa):
         grid.check(name, *_PER_CENT_G, (100 if name == "PGA" else 300) * LARGEST_PGA / GRAVITY)
     if "PGV" in grid.fields:
@@ -389,7 +389,7 @@ def _parse_grid(data: bytes) -> Grid:
     if len(data) > LARGEST_FILE:
         raise InputError.about("the file is larger than {most:.0f} MB", most=LARGEST_FILE / 1e6)
     if not data.strip():
-        raise InputError(fill("the file is empty"))
+        raise InputError.about("the file is empty")
     if data.startswith(_FOREIGN):
         raise InputError.about("the file is not XML. {hint}", hint=_HINT)
     reader = _Reader()
@@ -400,7 +400,7 @@ def _parse_grid(data: bytes) -> Grid:
         if not reader.found:
             raise InputError.about("the file is not the XML of a ShakeMap. {hint}", hint=_HINT) from None
         if line is None:
-            raise InputError(fill("the XML cannot be read. Download it again")) from None
+            raise InputError.about("the XML cannot be read. Download it again") from None
         raise InputError.about("line {line}: the XML is damaged or cut off. Download it again", line=line) from None
     return _build(reader)
 
@@ -453,7 +453,7 @@ def _build(reader: _Reader) -> Grid:
     if len(reader.names) > MOST_FIELDS:
         raise InputError.about("the file has more than {most} fields", most=MOST_FIELDS)
     if sorted(index for index, *_ in reader.names) != sorted(str(at + 1) for at in range(len(reader.names))):
-        raise InputError(fill("the fields (grid_field) are not numbered from 1 on, each once"))
+        raise InputError.about("the fields (grid_field) are not numbered from 1 on, each once")
     units: dict[str, str] = {}  # by the names of the fields, in the order of their columns
     for _, name, unit in sorted(reader.names, key=lambda one: int(one[0])):
         if name.upper() in units:
@@ -487,7 +487,7 @@ def _read_numbers(texts: Sequence[str], width: int, rows: int) -> FloatArray:
     found, at, rest = np.empty(rows * width), 0, ""
     for text in (*texts, " "):
         if len(rest) > _LONGEST or "_" in text or not text.isascii():
-            raise InputError(fill("grid_data holds something that is not a number"))
+            raise InputError.about("grid_data holds something that is not a number")
         cells = (rest + text).split()
         rest = cells.pop() if cells and not text[-1].isspace() else ""  # it goes on in the next text
         if at + len(cells) > found.size:
@@ -529,7 +529,7 @@ def _arrange(
     north, east = (values[order].reshape(rows, columns) for values in (latitudes, longitudes))
     is_regular = (north == north[:, :1]).all() and (east == east[:1]).all()
     if not (is_regular and _is_even(north[:, 0]) and _is_even(east[0])):
-        raise InputError(fill("LON and LAT are not those of a regular grid of nlon x nlat points"))
+        raise InputError.about("LON and LAT are not those of a regular grid of nlon x nlat points")
     return north[:, 0].copy(), east[0].copy(), order
 
 

@@ -21,14 +21,11 @@ from assess.motion.rows import run_rows
 from assess.progress import SILENT, Progress
 from assess.rocking import block
 from assess.rocking import planar_kernel as kernel
-from assess.rocking.ensemble import Rocking, check_motions
-from assess.rocking.response import Response
+from assess.rocking.ensemble import MOST_TRACED, Response, Rocking, check_motions
 from assess.units import GRAVITY
 
 Away = Literal[-1, 0, 1]
 """To which side a body may turn: 1 is that of positive acceleration, with the wall on the other; 0 without a wall."""
-MOST_TRACED = 10_000_000
-"""Points of the path that are kept, 240 MB."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

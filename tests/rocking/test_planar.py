@@ -12,9 +12,8 @@ from assess.errors import CancelledError
 from assess.motion.formats import read_records
 from assess.motion.record import treat
 from assess.rocking import planar_kernel as kernel
-from assess.rocking.ensemble import rock_blocks
+from assess.rocking.ensemble import follow_block, rock_blocks
 from assess.rocking.planar import Body, follow_body, rock_bodies, wall_restitution
-from assess.rocking.response import follow_block
 from assess.units import GRAVITY as G
 from tests.stopping import StopsAt
 

@@ -8,9 +8,8 @@ import pytest
 
 from assess.motion.formats import read_records
 from assess.motion.record import treat
-from assess.rocking import response
-from assess.rocking.ensemble import rock_blocks
-from assess.rocking.response import follow_block
+from assess.rocking import ensemble
+from assess.rocking.ensemble import follow_block, rock_blocks
 from assess.units import GRAVITY
 
 ROOT = Path(__file__).parents[2]
@@ -176,7 +175,7 @@ def test_long_steps_are_divided():
 def test_a_path_that_is_too_long_is_cut(monkeypatch, motions):
     motion = motions[0]
     whole = follow_block(0.4, 1.8, motion.acceleration * 1.57, motion.time_step)
-    monkeypatch.setattr(response, "MOST_TRACED", 100)
+    monkeypatch.setattr(ensemble, "MOST_TRACED", 100)
     one = follow_block(0.4, 1.8, motion.acceleration * 1.57, motion.time_step)
     assert (one.overturned, one.fall_time, one.impacts) == (True, whole.fall_time, whole.impacts)
     assert 100 < one.times.size < 110

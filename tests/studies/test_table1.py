@@ -15,7 +15,7 @@ from assess.errors import InputError
 from assess.methods import Cases
 from assess.motion.formats import read_records
 from assess.motion.record import treat
-from assess.rocking.response import follow_block
+from assess.rocking.ensemble import follow_block
 from assess.studies import run_study
 from assess.studies.agreement import SHORT_TITLES, evaluate_formulas
 from assess.studies.study import Options

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad
 
 from assess.rocking import block
-from assess.rocking.response import follow_block
+from assess.rocking.ensemble import follow_block
 from assess.studies import Options, build_page
 from assess.studies.released_blocks import list_released
 from assess.units import GRAVITY

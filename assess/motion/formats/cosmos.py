@@ -82,7 +82,7 @@ def _read_channel(lines: Lines) -> Record:
     titles = ((place, found) for place, line in after if (found := _DATA.match(line[:LONGEST_TEXT].strip())))
     at, title = next(titles, (0, None))
     if title is None or len(integers) <= AZIMUTH or len(reals) <= STEP:
-        raise RecordError(fill("the header is incomplete. Get the file again"))
+        raise RecordError.about("the header is incomplete. Get the file again")
     unit, code = title["unit"].strip(), int(title["code"])
     if unit.lower() in {"counts", "count", "volts", "volt", "mvolts"}:
         raise RecordError.about(

@@ -93,7 +93,7 @@ def _read_v1(lines: Lines) -> Record:
         header = "\n".join(lines.part(0, TEXT_V1))
         points, unit = _COUNT.search(header), _UNIT.search(header)
         if not points or not unit:
-            raise RecordError(fill("the header does not give the number of points, or their unit. Get the file again"))
+            raise RecordError.about("the header does not give the number of points, or their unit. Get the file again")
         pairs = read_columns(lines, DATA_V1, 2 * int(points[1]), PAIRS)
         with np.errstate(over="ignore"):  # what becomes infinite is refused where samples are checked
             own = pairs[1::2] * (read_acceleration_unit(unit[1]) or np.nan)

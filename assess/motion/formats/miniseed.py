@@ -83,7 +83,7 @@ def parse(data: bytes) -> tuple[Record, ...]:
                     "the file has more than {most:,} records of miniSEED: cut it to the shaking", most=MOST_PARTS
                 )
     if not channels:
-        raise RecordError(fill("the file has no complete miniSEED record. Get the file again"))
+        raise RecordError.about("the file has no complete miniSEED record. Get the file again")
     codes = [own[-1] for own in channels]
     note = nfill(
         "{n} byte that is no whole record of miniSEED was left out",
@@ -165,15 +165,13 @@ def _read_channel(parts: Sequence[_Part], notes: Sequence[str], whole_name: bool
     network, station, location, code = parts[0].names
     encodings = {part.encoding for part in parts}
     if encodings - {TEXT, *REALS}:
-        raise RecordError(
-            fill(
-                "the channel holds raw counts, not accelerations. Remove the instrument's response with ObsPy "
-                '(stream.remove_response(inventory, output="ACC")) and save the result as miniSEED, or as plain CSV in '
-                "m/s2"
-            )
+        raise RecordError.about(
+            "the channel holds raw counts, not accelerations. Remove the instrument's response with ObsPy "
+            '(stream.remove_response(inventory, output="ACC")) and save the result as miniSEED, or as plain CSV in '
+            "m/s2"
         )
     if TEXT in encodings:
-        raise RecordError(fill("the channel holds no numbers. Give a channel of an accelerometer"))
+        raise RecordError.about("the channel holds no numbers. Give a channel of an accelerometer")
     if code[1:2] != "N":
         raise RecordError.about(
             "the channel's code {code!r} is not that of an accelerometer (such as HNE). Save the accelerations as "

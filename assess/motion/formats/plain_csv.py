@@ -134,7 +134,7 @@ def _read_head(data: bytes) -> _Table:
     else:
         if len(data) > MOST_HEAD:
             raise _too_long(number)
-        raise RecordError(fill("there is no row of headings. Add one, such as: time [s], north [cm/s2]"))
+        raise RecordError.about("there is no row of headings. Add one, such as: time [s], north [cm/s2]")
     lines = split_text(decode(head[: end.start()]))
     separator = next((mark for mark in "\t;" if mark in lines[-1]), ",")
     headings, line = _cells(lines[-1], separator), len(lines)
@@ -218,7 +218,7 @@ def _read_values(data: bytes, table: _Table) -> list[FloatArray]:
         for column, own in zip(columns, numbers.T, strict=True):
             column.append(own.copy())
     if not rows:
-        raise RecordError(fill("there are no rows below the headings. Add the samples"))
+        raise RecordError.about("there are no rows below the headings. Add the samples")
     whole = []
     while columns:  # each is let go as it is joined
         whole.append(np.concatenate(columns.pop(0)))

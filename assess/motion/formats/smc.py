@@ -60,7 +60,7 @@ _LOCATION = re.compile(r"<loclbl=>(.*?)<end>")
 def _read_channel(lines: Lines) -> Record:
     found = _KIND.match(lines[0])
     if not found:
-        raise RecordError(fill("the first line names no type of SMC file. Get the file again"))
+        raise RecordError.about("the first line names no type of SMC file. Get the file again")
     kind, header = found[1], read_fields(lines, HEADER)
     if len(lines) <= COMMENTS:
         raise RecordError.about(

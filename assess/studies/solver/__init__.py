@@ -180,7 +180,7 @@ for _event, _direction in ((_strike, -1), (_fall, 1)):
 
 def _follow_by_kernel(case: Case, amplitude: float, until: float) -> Response:
     """Rock the block by `assess.rocking`; for the linear equation, a block so slender that the difference vanishes."""
-    from assess.rocking.response import follow_block
+    from assess.rocking.ensemble import follow_block
 
     alpha = SLENDER if case.is_linear else ALPHA
     acceleration = amplitude * (math.tan(alpha) if case.is_linear else alpha)
