@@ -148,12 +148,8 @@ def shake_record(
 class Beams:
     """A building, a beam a draw, on ground motions along one axis.
 
-    * `building`: of which the beams are drawn.
-    * `grid`: the samples.
-    * `seed`: of the draws.
-    * `key`: all that the ground motions depend on.
-    * `make_ground`: gives the ground motions of a group, by its number: (GROUP, n), in a unit of which floors give the
-      factor.
+    `key` is all that the ground motions depend on; `make_ground` gives those of a group by its number, (GROUP, n), in
+    a unit of which floors give the factor.
     """
 
     building: Building
@@ -184,8 +180,7 @@ class Beams:
 class FloorMotions:
     """The motions of one floor along one axis; `open_floor` finds the factors of its two bands.
 
-    * `beams`, `target`: as given.
-    * `high`, `low`: factors above and below the corner at PFA/(2 pi PFV) [-], the same in all draws.
+    `high` and `low` are those above and below the corner at PFA/(2 pi PFV) [-], the same in all draws.
     """
 
     beams: Beams

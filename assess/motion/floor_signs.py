@@ -35,9 +35,7 @@ def find_coherence(accelerations: FloatArray, time_step: float) -> FloatArray:
     It is the sum over the octave of the real part of the cross spectrum, over the root of the product of the sums of
     the two spectra: 1 where two floors move alike, -1 where one moves against the other.
 
-    * `accelerations` (k, n): records of k floors along one axis [m/s2], with a common start.
-    * `time_step`: [s].
-
+    `accelerations` (k, n) are records of k floors along one axis [m/s2], with a common start; `time_step` is in s.
     Raises ValueError if there is no floor, or a record is not finite or without motion.
     """
     rows = _check(accelerations)
@@ -54,9 +52,7 @@ def find_levels(accelerations: FloatArray, time_step: float) -> FloatArray:
     """Return which coherence of each two floors unrelated noise stays below, in size, in 95 % of cases [-], (k, k, b).
 
     It is two standard deviations of the correlation of unrelated noise (Bendat and Piersol 2010) of the octave's
-    bandwidth, over the time in which both floors shake in that octave.
-
-    Parameters and errors are those of `find_coherence`.
+    bandwidth, over the time in which both floors shake in that octave. Errors as of `find_coherence`.
     """
     rows = _check(accelerations)
     every = max(1, round(SPACING / time_step))
@@ -73,9 +69,8 @@ def find_signs(accelerations: FloatArray, time_step: float) -> NDArray[np.int64]
     Two floors whose coherence is clear have the product of their signs as its sign, unless two chains of floors
     disagree: the more coherent one decides then. Signs are relative: that of the floor of the largest PFA is 1 in every
     octave. Where the coherence is below that of unrelated noise (`find_levels`) there is none to be known: floors, or
-    groups of them, that are joined to no other keep 1, each group at its own floor of the largest PFA.
-
-    Parameters and errors are those of `find_coherence`.
+    groups of them, that are joined to no other keep 1, each group at its own floor of the largest PFA. Errors as of
+    `find_coherence`.
     """
     coherence = find_coherence(accelerations, time_step)
     is_clear = np.abs(coherence) > find_levels(accelerations, time_step)
@@ -117,10 +112,7 @@ def turn_phases(frequencies: FloatArray, signs: Sequence[int] | ArrayLike) -> ND
 
     At the centre of an octave the factor is its sign. Between two centres of opposite signs the phase turns by half a
     cycle, so that no amplitude is lost there, which it would be if one octave faded into the other. It always turns the
-    same way, so that two floors that both turn there keep their relation.
-
-    * `frequencies` (f,): [Hz].
-    * `signs` (b,): by octave of `octaves`, 1 or -1.
+    same way, so that two floors that both turn there keep their relation. Frequencies are in Hz, signs 1 or -1.
     """
     places = np.log2(np.maximum(frequencies, 1e-9))
     half_cycles = np.cumsum(np.abs(np.diff(np.asarray(signs), prepend=1)) // 2)

@@ -184,10 +184,7 @@ class Bench:
 
 
 def find_filter(target: Target, recipe: Recipe, noise: Sequence[Transforms], bench: Bench) -> tuple[Recipe, Single]:
-    """Return the recipe with filter and bending, and all its motions.
-
-    `noise` holds the groups of the realisations by which everything is set.
-    """
+    """Return the recipe with filter and bending, and its motions, from the groups of `noise` by which it is set."""
     places, grid, frequencies = choose_periods(target), recipe.grid, find_rates(recipe.grid).frequencies
     periods, wanted = target.periods[places], target.pseudo[places]
     weight = np.where(periods > BEYOND**2 * matched_to(periods, wanted), FAINT, 1.0)
@@ -286,12 +283,7 @@ CALIBRATED = 100
 class Generator:
     """Makes the motions of one floor along one axis; `build_generator` finds what it holds.
 
-    * `target`: of the floor.
-    * `phases`: of its motions; `threads`, `progress` as given to `build_generator`.
-    * `recipe`: what turns noise into motions.
-    * `made` (100, n): the first realisations [m/s2], which were made while it was found.
-    * `fit`: how they meet the target.
-    * `spectra`: their spectra.
+    `made` (100, n) are the first realisations [m/s2], made while the recipe was found; `fit` and `spectra` are theirs.
     """
 
     target: Target
@@ -307,9 +299,7 @@ class Generator:
         """Return realisations `first` to `first + count - 1`: accelerations [m/s2], (count, n), in single precision.
 
         A realisation is the same whatever else is made with it. It has the same phases on all floors of a building but
-        for the signs of those that have any.
-
-        Raises CancelledError if the caller stops the work.
+        for the signs of those that have any. Raises CancelledError if the caller stops the work.
         """
 
         def make(group: int) -> Single:
@@ -340,11 +330,9 @@ def build_generator(
     """Find the filter, the bending and the wavelets that make an ensemble meet its target.
 
     * `target`: of the floor, on the grid of its building.
-    * `grid`, `seed`, `axis`, `signs`: as of `assess.motion.noise.Phases`; errors likewise.
-    * `threads`: number of threads that share the work; it does not change a result.
-    * `progress`: asked often, here and in `Generator.realise`, whether to stop.
-
-    Raises CancelledError if the caller stops the work.
+    * `grid`, `seed`, `axis`, `signs`: as of `assess.motion.noise.Phases`, with its errors.
+    * `threads`: that share the work; they do not change a result.
+    * `progress`: asked often, here and in `Generator.realise`, whether to stop; CancelledError then.
     """
     phases = Phases(grid, seed, axis, signs)
     bench = Bench(threads, progress)

@@ -56,11 +56,8 @@ _KEYS = ("site_id", _TEXT)
 class GroundScenarios:
     """Computed scenarios of the ground motion; it pickles as its folder and hash, and is read again, once a process.
 
-    * `file`: name of the file of the values.
-    * `sha256`: hash of the hashes of both files.
-    * `sites_file`: name of the file of the sites.
-    * `hashes`: of the values and of the sites.
-    * `path`: the folder.
+    * `file`, `sites_file`: names of the files of the values and of the sites; `path` is their folder.
+    * `hashes`: of the two; `sha256` is that of both.
     * `latitude`, `longitude` (n,): of the sites [deg].
     * `start` (n + 1,): rows of `values` of each site: those of the i-th from ``start[i]`` to ``start[i + 1]``.
     * `values` (rows, measures): by the order of `measures` [g, cm/s]; within a site by event.
@@ -81,10 +78,7 @@ class GroundScenarios:
     event_count: int
 
     def at(self, latitude: float, longitude: float) -> SiteGround:
-        """Return the motion at the site nearest to a place [deg].
-
-        Raises InputError if that site is farther than `FARTHEST`, or events are missing there.
-        """
+        """Return the motion at the site nearest to a place [deg]; InputError if it is too far, or lacks events."""
         distances = find_distance(latitude, longitude, self.latitude, self.longitude)
         nearest = int(distances.argmin())
         distance = float(distances[nearest])
@@ -154,8 +148,7 @@ def _list_psa(measures: Sequence[str]) -> list[tuple[str, float]]:
 def read_scenarios(folder: Path) -> GroundScenarios:
     """Read the scenarios of a folder.
 
-    Raises InputError if a file is missing, cut off or another one, or a number in it cannot be; the message names the
-    file, and the line where there is one.
+    Raises InputError if a file is missing, cut off or another one, or a number is impossible; it names file and line.
     """
     folder = folder.resolve()
     sites_file = next((name for name in SITES if (folder / name).is_file()), None)

@@ -36,13 +36,10 @@ _AXES = {"X": 0, "Y": 1}
 class Phases:
     """The samples of motions, and what draws their phases; those of (seed, axis) are the same on all floors.
 
-    * `grid`: the building's samples.
     * `seed`: 0 or above. Phases and durations come from (seed, axis, number of the realisation) only.
-    * `axis` "X" or "Y": each axis has its own phases.
+    * `axis`: "X" or "Y", or KeyError: each axis has its own phases.
     * `signs` (b,): of a floor, 1 or -1 by octave, from `assess.motion.floor_signs.find_signs`, by which its phases are
       turned; None where they turn nothing.
-
-    Raises KeyError if the axis is not "X" or "Y".
     """
 
     grid: Grid
@@ -131,12 +128,9 @@ def _draw(phases: Phases, group: int, progress: Progress) -> Bands:
 def draw_noise(
     envelopes: Envelopes, phases: Phases, group: int, progress: Progress, *, stretches: FloatArray | None = None
 ) -> Transforms:
-    """Return the transforms of a group of white noise under the envelopes of a floor.
+    """Return the transforms (GROUP, f), at the frequencies of `find_rates`, of a group of white noise under envelopes.
 
     `stretches` (GROUP,) of the time of each motion are drawn unless they are given [-].
-
-    Returned (GROUP, f): Fourier transforms of realisations `group` x GROUP and following, at the frequencies of
-    `find_rates`.
     """
     from scipy.fft import rfft
 

@@ -34,10 +34,7 @@ EXTENT = 2.6
 
 
 def bend_to(peaks: FloatArray, wanted: float, most: float, low: float = 1.0, high: float = 1.0) -> float:
-    """Return the bending b [-] that brings the mean of `peaks` (k,) between two shares of `wanted`; at most `most`.
-
-    A mean that lies there already is left.
-    """
+    """Return the bending b [-] that brings the mean of `peaks` (k,), if need be, between two shares of `wanted`."""
     q = (peaks / wanted) ** 4
     missing = wanted * np.clip(peaks.mean() / wanted, low, high) - peaks.mean()
     return float(np.clip(missing / (peaks * q / (1 + q)).mean(), MOST_BENT, most))
@@ -227,11 +224,8 @@ def _add(
 class Recipe:
     """The steps from noise to motions.
 
-    * `grid`: the samples.
-    * `gains` (f,): the filter.
-    * `pfv`, `by_pfv`: velocities are bent by `by_pfv` [-] about `pfv` [m/s].
-    * `steps`: what is done to the filtered motions, in this order.
-    * `lift`: factor on PFA [-].
+    A filter with `gains` (f,); velocities are bent by `by_pfv` [-] about `pfv` [m/s]; then come `steps`, and `lift`, a
+    factor on PFA [-].
     """
 
     grid: Grid
@@ -242,10 +236,7 @@ class Recipe:
     lift: float = 1.0
 
     def shape(self, noise: Transforms, motions: Single) -> FloatArray:
-        """Fill `motions` (k, n) with filtered noise whose velocity is bent and tapered.
-
-        Returned (k, 2): PFV before it is bent [m/s], and PFA after [m/s2].
-        """
+        """Fill motions (k, n) with noise, filtered, bent and tapered; return PFV before [m/s] and PFA after [m/s2]."""
         from scipy.fft import irfft
 
         acceleration = irfft(noise * self.gains, find_rates(self.grid).length, axis=1, overwrite_x=True)

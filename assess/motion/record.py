@@ -30,11 +30,9 @@ SLICE = 200_000
 def high_pass_both_ways(
     values: FloatArray, time_step: float, corner: float, pad: int, progress: Progress
 ) -> FloatArray:
-    """Return `values` (n,) filtered, with `pad` zeros before and after them, (n + 2 pad,).
+    """Return `values` (n,), one every `time_step` [s], filtered above `corner` [Hz] with `pad` zeros at both ends.
 
-    * `time_step`, `corner`: [s] and [Hz].
-    * `pad`: zeros at each end.
-    * `progress`: asked for every `SLICE` samples whether to stop.
+    `progress` is asked for every `SLICE` samples whether to stop. Returned: (n + 2 pad,).
     """
     # A digital high-pass of PASS_ORDER 2 by the bilinear transform, in the steps of `scipy.signal.butter` and their
     # order: its poles nearly meet its zeros, and a rounding error in a coefficient changes a motion by up to 1e-12 of
@@ -204,9 +202,8 @@ def treat(record: Record, baseline: Baseline = "standard", *, progress: Progress
     * `baseline`: "standard"; "none" leaves out the filter, not the removal of an uncorrected record's mean.
     * `progress`: asked often whether to stop; CancelledError then.
 
-    Returned: with as many samples as `record`. Velocity and displacement start from zero: at the first sample, or,
-    where filtered, at the start of the zeros put before it, so that the pass backward in time leaves no false
-    offset.
+    It has as many samples as `record`. Velocity and displacement start from zero: at the first sample, or, where
+    filtered, at the start of the zeros put before it, so that the pass backward in time leaves no false offset.
     """
     if baseline != "standard":
         return _treat(record, baseline, progress)
@@ -271,9 +268,7 @@ def resample(times: FloatArray, values: FloatArray, time_step: float) -> FloatAr
 
 
 def build_series(times: FloatArray, values: FloatArray) -> Series:
-    """Make samples at given times evenly spaced, changing as little as that takes.
-
-    * `times`, `values` (n,): times [s], and accelerations [m/s2] as recorded then.
+    """Make accelerations [m/s2] (n,) at given times [s] (n,) evenly spaced, changing as little as that takes.
 
     Raises RecordError if over 1 % of the times do not run forwards, or times or values cannot be those of a record.
     """

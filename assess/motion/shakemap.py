@@ -72,8 +72,7 @@ class Grid:
 
     * `header`, `event`: attributes of the file's root and of its event.
     * `latitude`, `longitude` (m,): rising [deg].
-    * `fields`: values as in the file, by the name of the field.
-    * `units`: units as in the file, by the name of the field.
+    * `fields`, `units`: as in the file, by the name of the field.
     """
 
     header: Mapping[str, str]
@@ -179,12 +178,9 @@ class ShakeMap:
 
     Read from a file, it pickles as the file's path and hash and is read again, once a process.
 
-    * `file`: name of the file of the grid.
-    * `sha256`: hash of its bytes; with an uncertainty.xml, of the hashes of both files.
-    * `grid_sha256`: hash of the grid's bytes alone.
-    * `grid`: what the grid holds.
+    * `file`, `grid_sha256`: name and hash of the file of the grid.
+    * `sha256`: that hash; with an uncertainty.xml, of the hashes of both files.
     * `uncertainty_file`, `uncertainty_sha256`: name and hash of the file of uncertainties; "" where there is none.
-    * `uncertainty`: what that holds.
     * `path`: where the grid was read from.
     """
 
@@ -207,11 +203,7 @@ class ShakeMap:
         return fill("{name}", name=name)
 
     def at(self, latitude: float, longitude: float) -> SiteGround:
-        """Return the shaking at a place [deg].
-
-        Raises InputError if the grid does not cover the place, or has no PGA there; the message names the place and the
-        grid.
-        """
+        """Return the shaking at a place [deg]; InputError if the grid does not cover it, or has no PGA there."""
         with naming(self.file):
             read = self.grid.locate(latitude, longitude)
             pga = read("PGA", logarithmic=True)
@@ -321,10 +313,7 @@ def name_uncertainty(name: str) -> tuple[str, ...]:
 
 
 def read_shakemap(path: Path) -> ShakeMap:
-    """Read the map of a grid.xml, with the uncertainty.xml in its folder.
-
-    Raises InputError if a file cannot be read or used; the message names it.
-    """
+    """Read the map of a grid.xml, with the uncertainty.xml in its folder; InputError as of `parse_shakemap`."""
     path = path.resolve()
     beside = next((one for name in name_uncertainty(path.name) if (one := path.with_name(name)).is_file()), None)
     own = {} if beside is None else {"uncertainty": read_file(beside), "uncertainty_name": beside.name}

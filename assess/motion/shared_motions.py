@@ -50,8 +50,7 @@ KEPT: Kept[_Entry] = Kept(160_000_000)
 class SharedMotions:
     """The motions of one floor along one axis: those of its shape, multiplied by a factor [-].
 
-    * `generator`: of the shape, in the threads and under the progress of the caller.
-    * `factor`: of the floor [-].
+    `generator` is that of the shape, in the threads and under the progress of the caller.
     """
 
     generator: Generator
@@ -96,11 +95,9 @@ class SharedMotions:
 def share_motions(
     target: Target, phases: Phases, *, factor: float, threads: int = 1, progress: Progress = SILENT
 ) -> SharedMotions:
-    """Return the motions of a floor whose target is `factor` times another, which floors share.
+    """Return the motions of a floor whose target is `factor` [-] times `target`, which floors share.
 
-    * `target`: of the shape.
-    * `factor`: that of the floor over it [-].
-    * `threads`, `progress`: as of `assess.motion.generate.build_generator`; errors likewise.
+    `threads`, `progress` and errors are those of `assess.motion.generate.build_generator`.
     """
 
     def make() -> _Entry:

@@ -20,9 +20,7 @@ class SiteGround:
 
     It takes the place of Ground PGA, SDS, Ground PGV and Shaking.
 
-    * `kind`: what it comes from.
-    * `file`: name of its file.
-    * `sha256`: hash of the file's bytes.
+    * `file`, `sha256`: name of its file, and hash of the file's bytes.
     * `pga`, `pgv`: medians [m/s2], [m/s]; `pgv` is None where it is not known.
     * `psa`: period [s] and median 5 % spectral acceleration [m/s2], as far as they are known.
     * `dispersion`: standard deviation of ln of `measure` at this place [-].

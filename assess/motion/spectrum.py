@@ -59,11 +59,11 @@ def response_spectrum(
     * `time_step`: [s].
     * `periods` (m,): above 0 [s].
     * `damping`: share of critical damping, above 0 and below 1 [-].
-    * `threads`: number of threads that share the motions; it does not change a result.
-    * `progress`: asked before each motion whether to stop.
+    * `threads`: that share the motions; they do not change a result.
+    * `progress`: asked before each motion whether to stop; CancelledError then.
 
-    Raises CancelledError if the caller stops the work; ValueError if a period, the damping or the time step is outside
-    these limits, or a motion has fewer than two samples or one that is not finite.
+    Raises ValueError if a period, the damping or the time step is outside these limits, or a motion has fewer than two
+    samples or one that is not finite.
     """
     periods = np.asarray(periods, dtype=np.float64)
     acceleration = np.asarray(acceleration, dtype=np.float64)

@@ -28,9 +28,7 @@ TEXTS = frozenset({".md", ".html", ".htm", ".pdf", ".rst", ".ini", ".db"})
 class Suite:
     """Motions of the user's own, as treated; motion k is one earthquake, the same on every floor and axis.
 
-    * `folder`: name of the folder.
-    * `motions`: every horizontal channel, by file and channel, in the order of their time steps and then of their
-      names.
+    * `motions`: every horizontal channel, by file and channel, in the order of time steps and then of names.
     * `files`: hashes (SHA-256) of the files.
     * `notes`: what was left out, and why.
     """

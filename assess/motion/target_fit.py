@@ -16,7 +16,6 @@ from assess.progress import SILENT, Progress
 class Fit:
     """How the mean of an ensemble meets its target, and how its realisations scatter.
 
-    * `count`: realisations.
     * `matched_to`: longest period at which the spectrum is judged [s]; the shortest is 0.05 s.
     * `mean_deviation`, `worst_deviation`: of the mean spectrum from the target's [-]: the mean size, and the largest,
       signed.

@@ -64,8 +64,7 @@ _TINY = 1e-6
 class Uncertainty:
     """What is taken to be uncertain.
 
-    * `motion`: standard deviation of the natural logarithm of the motion's amplitude from one earthquake to the next
-      [-].
+    * `motion`: standard deviation of ln of the motion's amplitude from one earthquake to the next [-].
     * `piece`: whether base, height, centre of gravity and restitution of a piece are drawn.
     """
 
@@ -165,8 +164,7 @@ def draw_bodies(
     * `seed`, `first`, `count`: draws `first` to `first + count - 1`.
     * `scanned` (m,): which sizes were measured by a scan; None: none. The draws of the others do not depend on it.
 
-    Returned: (m, count) each. Where nearly every restitution would be negative, of a body about too stocky to rock,
-    it is 0.
+    Returned: (m, count) each. Restitution is 0 where nearly every one would be negative: a body about too stocky.
     """
     every, which = np.unique(np.asarray(names), return_inverse=True)
     blocks, start = range(first // _AT_ONCE, -(-(first + count) // _AT_ONCE)), first % _AT_ONCE

@@ -131,11 +131,10 @@ def rock_blocks(
       equal angular momentum, Housner's 1 - 1.5 sin2(alpha) for a uniform block.
     * `centre` (m,) or (m, k): height of the centre of gravity as a share of the block's [-]; 0.5 for a uniform one.
     * `scale` (m,) or (m, k): factor on the motion [-].
-    * `threads`: tiles are shared out among as many; they do not change a result, nor do the order of blocks or of
-      motions.
-    * `progress`: asked before each tile whether to stop.
+    * `threads`: share the tiles; neither they nor the order of blocks or of motions change a result.
+    * `progress`: asked before each tile whether to stop; CancelledError then.
 
-    Raises CancelledError if the caller stops the work; ValueError if a size is not above 0, a block without a
+    Raises ValueError if a size is not above 0, a block without a
     restitution is too stocky to rock (B/H of 1.41 or more, if uniform), a centre is not within the block, a restitution
     is outside 0 to 1, or the motions or their time step are not finite numbers of that shape.
     """
@@ -246,14 +245,8 @@ def follow_block(
 ) -> Response:
     """Integrate one block under one motion, as `rock_blocks` does, and keep its path.
 
-    * `breadth`, `height`: sizes of the block [m]; breadth is the side parallel to the motion.
-    * `acceleration` (n,): base acceleration [m/s2].
-    * `time_step`: [s].
-    * `restitution`: angular velocity after an impact over that before it [-], 0 to 1; NaN is that of equal angular
-      momentum.
-    * `centre`: height of the centre of gravity as a share of the block's [-].
-
-    Raises ValueError as `rock_blocks`.
+    Parameters and errors are those of `rock_blocks`, for one pair: sizes [m], `acceleration` (n,) [m/s2] every
+    `time_step` [s], restitution [-] and height of the centre of gravity as a share of the block's [-].
     """
     body = Bodies.of(breadth, height, restitution, centre, 1.0)
     motions = check_motions(np.asarray(acceleration)[np.newaxis], time_step)

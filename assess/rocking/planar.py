@@ -78,10 +78,7 @@ class Body:
     def rectangular(
         cls, breadth: ArrayLike, height: ArrayLike, *, centre: ArrayLike = 0.5, restitution: ArrayLike = math.nan
     ) -> Self:
-        """Build a body of sizes [m], its centre of gravity at `centre` times the height, I_cg = m (B2 + H2)/12.
-
-        Raises ValueError as `of`.
-        """
+        """Build a body of sizes [m], its centre of gravity at `centre` times the height, I_cg = m (B2 + H2)/12."""
         B, H = np.asarray(breadth, dtype=np.float64), np.asarray(height, dtype=np.float64)
         p = block.frequency_parameter(B, H, np.asarray(centre))
         return cls.of(
@@ -125,10 +122,10 @@ def rock_bodies(
     * `vertical` (k, n): vertical accelerations, upwards positive [m/s2].
     * `away`: -1 or 1 beside a wall; see `Away`.
     * `scale` (k,): each motion is multiplied by its own [-], the vertical one too.
-    * `threads`: motions are shared out among as many; they do not change a result.
-    * `progress`: asked before each motion whether to stop.
+    * `threads`: share the motions; they do not change a result.
+    * `progress`: asked before each motion whether to stop; CancelledError then.
 
-    Raises CancelledError if the caller stops the work; ValueError if the motions, their scale or their time step are
+    Raises ValueError if the motions, their scale or their time step are
     not finite numbers of that shape, or the vertical acceleration is 1 g or more downwards, where a body leaves the
     floor.
     """
@@ -151,13 +148,7 @@ def follow_body(
 ) -> Response:
     """Integrate one body under one motion, as `rock_bodies` does, and keep its path.
 
-    * `body`: of numbers.
-    * `acceleration` (n,): horizontal acceleration of the floor [m/s2].
-    * `time_step`: [s].
-    * `vertical` (n,): vertical acceleration, upwards positive [m/s2].
-    * `away`: -1 or 1 beside a wall; see `Away`.
-
-    Raises ValueError as `rock_bodies`.
+    Parameters and errors are those of `rock_bodies`: a `body` of numbers, and accelerations (n,) [m/s2].
     """
     both = (np.asarray(acceleration)[np.newaxis], None if vertical is None else np.asarray(vertical)[np.newaxis])
     (across,), (up,) = _check_motions(*both, time_step, 1.0)

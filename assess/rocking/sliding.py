@@ -116,12 +116,12 @@ def peak_slip(
     * `motions` (k, n): accelerations of the floor [m/s2].
     * `time_step`: [s].
     * `scale` (k,): each motion is multiplied by its own [-].
-    * `threads`: motions are shared out among as many; they do not change a result.
-    * `progress`: asked before each motion whether to stop.
+    * `threads`: share the motions; they do not change a result.
+    * `progress`: asked before each motion whether to stop; CancelledError then.
 
     Returned (m, k): of each friction under each motion [m].
 
-    Raises CancelledError if the caller stops the work; ValueError if a coefficient of friction is not above 0, or the
+    Raises ValueError if a coefficient of friction is not above 0, or the
     motions, their scale or their time step are not finite numbers of that shape.
     """
     from assess.rocking.slip import slide

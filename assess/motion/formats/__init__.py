@@ -71,10 +71,9 @@ def all_formats() -> tuple[Format, ...]:
 
 
 def read_records(path: Path, *, progress: Progress = SILENT) -> tuple[Record, ...]:
-    """Read every channel of a file of recorded motion, whatever its format, or of all those in a zip archive.
+    """Read every channel of a file of recorded motion of any format, or of all those in a zip archive.
 
-    Raises RecordError if the file cannot be read or used; the message names the file, what is the matter, and how to
-    fix it.
+    Raises RecordError if it cannot be read or used; the message names the file, the fault, and how to fix it.
     """
     return progress.wait_for(lambda: parse_records(read_bytes(path), path.name, progress=progress))
 
@@ -90,10 +89,7 @@ def read_bytes(path: Path) -> bytes:
 
 
 def parse_records(data: bytes, name: str, *, progress: Progress = SILENT) -> tuple[Record, ...]:
-    """Read every channel of a file from its bytes, as `read_records` does; `name` is how messages call the file.
-
-    Raises RecordError if they cannot be read or used.
-    """
+    """Read every channel of a file from its bytes, as `read_records` does; `name` is how messages call the file."""
     try:
         if not data:
             raise RecordError.about("the file is empty. Get it again")
@@ -133,10 +129,7 @@ class Channel(NamedTuple):
 
 
 def read_channels(name: str) -> list[Channel]:
-    """Return the channels of ``FILE``, or the one of ``FILE#channel``, as they are and as treated.
-
-    Raises RecordError if the file cannot be read, or has no such channel.
-    """
+    """Return the channels of ``FILE``, or the one of ``FILE#channel``; RecordError as of `read_channel`."""
     path, channel = _split(name)
     if channel is not None:
         return [read_channel(name)]
@@ -148,8 +141,7 @@ def read_channels(name: str) -> list[Channel]:
 def read_channel(name: str, baseline: Baseline = "standard") -> Channel:
     """Return the channel of ``FILE#channel``, or the only one of ``FILE``.
 
-    Raises RecordError if the file cannot be read, has no such channel, or has several and none is named; the message
-    lists them.
+    Raises RecordError if the file cannot be read, or has no such channel, or several and none is named: listed then.
     """
     path, channel = _split(name)
     record = select(read_records(path), channel)

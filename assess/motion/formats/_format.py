@@ -42,10 +42,8 @@ UNKNOWN: Direction = (None, None)
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """One way in which files hold recorded motion.
+    """One way in which files hold recorded motion; `title` is shown to people.
 
-    * `key`: short name.
-    * `title`: as shown to people.
     * `recognises`: whether the first bytes of a file are of this format. The name of a file decides nothing.
     * `parse`: from the whole file to its channels, which need not name it; raises RecordError, and nothing else,
       whatever the bytes.
@@ -79,9 +77,7 @@ def build_record(
 ) -> Record:
     """Return the record of one channel; see `Record` for the parameters that are not named here.
 
-    * `series`: evenly spaced samples [m/s2].
     * `own` (n,): the file's own samples [m/s2], where they are not evenly spaced.
-    * `direction`: azimuth [deg] and whether it is vertical; None where it is not known.
     * `has_offset`: whether the samples carry the instrument's offset: the peak is then that about their mean.
     * `notes`: further notes than those of the series.
     """
@@ -166,10 +162,7 @@ def too_many_values() -> RecordError:
 
 
 def keep_readable(parts: Iterable[tuple[str, T]], read: Callable[[T], Record]) -> tuple[Record, ...]:
-    """Read every named part that can be read; why the others cannot is noted on those.
-
-    Raises RecordError if none can be read.
-    """
+    """Read every named part that can be read, and note on those why the others cannot; RecordError if none can."""
     records, reasons = [], []
     for name, part in parts:
         try:
@@ -226,13 +219,10 @@ _QUADRANT = re.compile(r"([NS])\s*(\d{1,2}(?:\.\d*)?)\s*(?:deg\w*\.?|°)?\s*([EW
 
 
 def read_direction(text: str, *, bare_degrees: bool = True) -> Direction:
-    """Return the direction that the name of a channel or the header's word for it tells.
+    """Return the direction by a channel's name or header, such as "N21W", "090", "HNZ--", "UD2", "roof, east", "Düşey".
 
-    * `text`: such as "N21W", "090", "HNZ--", "UD2", "roof, east" or "Düşey".
-    * `bare_degrees`: whether a number alone, or at the end of a station's code, is an azimuth and not the number of the
-      channel.
-
-    Returned: not known where no word of it tells a direction, or where two of them contradict each other.
+    It is not known where no word tells a direction, or where two of them contradict each other. `bare_degrees` tells
+    whether a number alone, or at the end of a station's code, is an azimuth and not the number of the channel.
     """
     text = text.strip()
     quadrant, degrees = _QUADRANT.fullmatch(text), _DEGREES.search(text)

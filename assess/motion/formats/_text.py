@@ -45,9 +45,7 @@ class Columns:
 
 
 class Lines:
-    """Lines of a file that belong together, each decoded (Latin-1) when it is asked for.
-
-    As objects they would take ten times their bytes.
+    """Lines of a file that belong together, each decoded (Latin-1) when asked for: objects take ten times their bytes.
 
     * `data`: the text of the file, whose lines end with a line feed.
     * `ends` (n,): the place of the end of each line [bytes].
@@ -138,9 +136,7 @@ def text_format(
 ) -> Format:
     """Return the format of a text file.
 
-    * `key`, `title`: as of `Format`.
     * `recognised`: matches the beginning of a file, whose lines end with a line feed here.
-    * `read_channel`: from a channel's lines to its record.
     * `starts`: matches the first line of each channel; what stands before the first is left out. None where a file has
       one channel.
     * `missing`: what is wrong with a file that has no such line.
@@ -197,10 +193,7 @@ def read_format(text: str, default: Columns) -> Columns:
 
 
 def read_columns(lines: Lines, start: int, count: int, columns: Columns, factor: float = 1.0) -> FloatArray:
-    """Return `count` numbers in `columns`, from the line at `start` on, times `factor`.
-
-    Raises RecordError if there are fewer, or one cannot be read; the message names the line.
-    """
+    """Return `count` numbers in columns, from a line on, times `factor`; RecordError if one is missing or no number."""
     _check_count(count)
     rows = lines.part(start, start + math.ceil(count / columns.per_line))
     filled = [has_text(cells) for cells in rows.cut(columns)]
@@ -263,8 +256,7 @@ def convert(
 ) -> FloatArray:
     """Return the first `count` cells or words of some lines as numbers times `factor`.
 
-    `per_line` is None where lines do not count. Raises RecordError if one is no number; the message names its line or
-    its place.
+    `per_line` is None where lines do not count. A RecordError names the line or the place of what is no number.
     """
     values, done = np.empty(count), 0
     for block in blocks:

@@ -122,12 +122,7 @@ def _read_v2(lines: Lines) -> Record:
 def _build(
     text: Mapping[str, str], series: Series, own: FloatArray, header_pfa: float | None, *, corrected: bool
 ) -> Record:
-    """Return a record of which `text` are the lines of text.
-
-    A channel goes by its number in the building, as on the drawings of the station, where the file has it, else by
-    the recorder's.
-    """
-    number = text["drawn_as"] or text["number"]
+    number = text["drawn_as"] or text["number"]  # that on the drawings of the building, or else of the recorder
     return build_record(
         series, own=own, corrected=corrected, channel=number and (number.lstrip("0") or "0"),
         direction=read_direction(text["direction"]), location=text["location"],

@@ -75,10 +75,7 @@ def recognises(head: bytes) -> bool:
 
 
 def parse(data: bytes) -> tuple[Record, ...]:
-    """Read every channel of a plain CSV file.
-
-    Raises RecordError if a heading has no known unit, or a cell is no number; the message names the line.
-    """
+    """Read every channel; a RecordError names the line of a heading without a unit, or of a cell that is no number."""
     table = _read_head(data)
     values = _read_values(data, table)
     directions, comments = _read_directions(table), table.comments

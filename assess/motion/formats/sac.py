@@ -63,10 +63,7 @@ class _Header:
 
 
 def parse(data: bytes) -> tuple[Record, ...]:
-    """Read the one channel of a SAC file.
-
-    Raises RecordError if the unit is not known, or the file is damaged.
-    """
+    """Read the one channel; RecordError if its unit is not known, or the file is damaged."""
     header = _read_header(data)
     if header is None:
         raise RecordError.about("the header is not that of a SAC file. Get the file again")
