@@ -36,7 +36,7 @@ from assess.methods.expression import number, show
 from assess.methods.method import Column, Example, Method, Outcome, Reason, Reference
 from assess.methods.simulate import (
     LOOKS,
-    Beside,
+    SlipAndWall,
     find_branch,
     interval_width,
     make_batches,
@@ -142,7 +142,7 @@ def _integrate(
     fell, ideal = np.zeros((count, 0), np.bool_), np.zeros((count, 0), np.bool_)
     rotation, tried = np.zeros((count, 0), np.float32), np.zeros((len(TRIED), count), dtype=np.int64)
     size, going, has_wall = min(BATCH, MOST_PAIRS // max(1, count) + 1), np.arange(count), cases.wall[own] != NO_WALL
-    beside = Beside(cases, settings, np.flatnonzero(cases.slides_under == number), own[has_wall])
+    extras = SlipAndWall(cases, settings, np.flatnonzero(cases.slides_under == number), own[has_wall])
     alike, speeds = Alike.of(cases.alike[own], cases.quantity[own]), list[FloatArray]()
     for first, last in zip((0, *checks), checks, strict=False):
         wider = ((0, 0), (0, last - first))
@@ -163,7 +163,7 @@ def _integrate(
                 if settings.ideal or not is_drawn:
                     ideal[going, here], _ = rock_cases(cases, own[going], batch, time_step, threads, progress)
             if first == 0:
-                beside.add(batch, time_step, at, threads, progress)
+                extras.add(batch, time_step, at, threads, progress)
             stage.at(here.stop / checks[-1], number)
         runs[going] = last
         counted = ideal if settings.ideal else fell
@@ -186,13 +186,13 @@ def _integrate(
     }  # fmt: skip
     if ensemble.record is not None and count:
         found |= _rock_under_record(cases, own, ensemble.record, threads, progress)
-    slips = dict(zip(("slip_median_cm", "slip_84_cm"), beside.find_slip(), strict=True))
+    slips = dict(zip(("slip_median_cm", "slip_84_cm"), extras.find_slip(), strict=True))
     # The chance with a wall, and whether it is above that without in the same draws
     one_sided = np.zeros(count)
-    one_sided[has_wall], draws = beside.find_one_sided()
+    one_sided[has_wall], draws = extras.find_one_sided()
     alone, chance = (alike.average(one)[has_wall] for one in (counted[:, :draws].mean(axis=1), one_sided))
     walled = {"one_sided": chance, "wall_higher": chance > alone}
-    return joint, [(own, found), (beside.sliders, slips), (beside.walled, walled)]
+    return joint, [(own, found), (extras.sliders, slips), (extras.walled, walled)]
 
 
 def _rock_under_record(

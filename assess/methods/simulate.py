@@ -146,29 +146,25 @@ def may_slide(cases: Cases, settings: Settings) -> BoolArray:
 
 
 @dataclass(slots=True)
-class Beside:
-    """Finds slip and falls beside a wall for cases of one ensemble, batch by batch of its motions.
+class SlipAndWall:
+    """Finds slip, and falls with a wall at the back, of cases of one ensemble, batch by batch of its motions.
 
-    * `cases`: all of them.
-    * `settings`: seed, and whether nothing is drawn.
-    * `sliders`, `walled` (p,) and (q,): the cases whose slip, and whose falls beside a wall, are wanted.
+    `sliders` (p,) and `walled` (q,) are the cases whose slip, and whose falls, are wanted.
     """
 
     cases: Cases
     settings: Settings
     sliders: NDArray[np.intp]
     walled: NDArray[np.intp]
-    drawn: Cases = field(init=False)
-    """The cases with what is uncertain of them in this run."""
     _slips: list[FloatArray] = field(default_factory=list)
     """Of each slider under each motion, (p, k) [m]."""
     _fell: list[BoolArray] = field(default_factory=list)
     """Whether each walled piece falls in each draw, (2, q, k): turning in either direction, if it can."""
 
     def __post_init__(self) -> None:
-        certain, none = Uncertainty(motion=0.0, piece=False), np.zeros_like(self.cases.dispersion)
-        as_given = replace(self.cases, uncertainty=certain, dispersion=none)
-        self.drawn = as_given if self.settings.ideal else self.cases
+        if self.settings.ideal:  # nothing is drawn
+            certain, none = Uncertainty(motion=0.0, piece=False), np.zeros_like(self.cases.dispersion)
+            self.cases = replace(self.cases, uncertainty=certain, dispersion=none)
 
     def add(
         self, motions: NDArray[np.floating], time_step: float, first: int, threads: int, progress: Progress = SILENT
@@ -177,8 +173,8 @@ class Beside:
         both = np.concatenate([self.sliders, self.walled])
         if not both.size:
             return
-        numbers = self.drawn.earthquakes.draw(self.settings.seed, first, len(motions))
-        scale = np.exp(self.drawn.dispersion[both[0]] * numbers)  # all are on one floor
+        numbers = self.cases.earthquakes.draw(self.settings.seed, first, len(motions))
+        scale = np.exp(self.cases.dispersion[both[0]] * numbers)  # all are on one floor
         every, cases = motions.astype(np.float64), self.cases
         if self.sliders.size:
             own = self.sliders
@@ -196,7 +192,7 @@ class Beside:
         for at, away in enumerate(ways):
             here = np.isin(cases.wall[self.walled], (away, SIDE_UNKNOWN))
             if here.any():
-                drawn = draw_body(self.drawn, self.walled[here], self.settings.seed, first, len(motions))
+                drawn = draw_body(cases, self.walled[here], self.settings.seed, first, len(motions))
                 body = Body.rectangular(drawn.breadth, drawn.height, centre=drawn.centre, restitution=drawn.restitution)
                 fell[at, here] = rock_bodies(
                     body, every, time_step, away=away, scale=scale, threads=threads, progress=progress

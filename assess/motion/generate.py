@@ -25,6 +25,7 @@ wavelets change the mean of the ensemble, not each motion.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -146,44 +147,34 @@ NEARER, BEYOND = 1.04, 1.2
 """Ordinates are corrected from and up to these ratios beyond the periods at which the match is judged [-]."""
 
 
-@dataclass(frozen=True, slots=True)
-class Bench:
-    """Where the work is done: in how many threads, and whether to stop."""
-
-    threads: int
-    progress: Progress
-
-    def run(self, work: Callable[[slice], object], count: int) -> None:
-        """Call `work` with the rows of each group of `count` motions."""
-        run_groups(work, count, self.threads, self.progress)
-
-    def shape(self, recipe: Recipe, noise: Sequence[Transforms], count: int) -> tuple[Single, FloatArray]:
-        """Return filtered motions (count, n) and their peaks (count, 2), as `Recipe.shape`."""
-        motions, peaks = np.empty((count, recipe.grid.count), np.float32), np.empty((count, 2))
-
-        def work(rows: slice) -> None:
-            peaks[rows] = recipe.shape(noise[rows.start // GROUP], motions[rows])
-
-        self.run(work, count)
-        return motions, peaks
-
-    def watch(self, sweep: Sweep, motions: Single) -> tuple[Single, NDArray[np.int32]]:
-        """Return the peaks of oscillators and when they come, as `Sweep.peaks`."""
-        peaks = np.empty((len(motions), sweep.periods.size), np.float32)
-        when = np.empty(peaks.shape, np.int32)
-
-        def work(rows: slice) -> None:
-            peaks[rows], when[rows] = sweep.peaks(motions[rows])
-
-        self.run(work, len(motions))
-        return peaks, when
-
-    def mean(self, sweep: Sweep, motions: Single) -> FloatArray:
-        """Return the mean spectrum of motions (k, n), (m,)."""
-        return np.asarray(np.abs(self.watch(sweep, motions)[0]).mean(axis=0, dtype=np.float64))
+Run = Callable[[Callable[[slice], object], int], None]
+"""`run_groups` in so many threads: calls some work with the rows of each group of motions, and asks whether to stop."""
 
 
-def find_filter(target: Target, recipe: Recipe, noise: Sequence[Transforms], bench: Bench) -> tuple[Recipe, Single]:
+def _shape(recipe: Recipe, noise: Sequence[Transforms], count: int, run: Run) -> tuple[Single, FloatArray]:
+    """Return filtered motions (count, n) and their peaks (count, 2), as `Recipe.shape`."""
+    motions, peaks = np.empty((count, recipe.grid.count), np.float32), np.empty((count, 2))
+
+    def work(rows: slice) -> None:
+        peaks[rows] = recipe.shape(noise[rows.start // GROUP], motions[rows])
+
+    run(work, count)
+    return motions, peaks
+
+
+def _watch(sweep: Sweep, motions: Single, run: Run) -> tuple[Single, NDArray[np.int32], FloatArray]:
+    """Return the peaks of oscillators and when they come, as `Sweep.peaks`, and the mean spectrum (m,)."""
+    peaks = np.empty((len(motions), sweep.periods.size), np.float32)
+    when = np.empty(peaks.shape, np.int32)
+
+    def work(rows: slice) -> None:
+        peaks[rows], when[rows] = sweep.peaks(motions[rows])
+
+    run(work, len(motions))
+    return peaks, when, np.abs(peaks).mean(axis=0, dtype=np.float64)
+
+
+def find_filter(target: Target, recipe: Recipe, noise: Sequence[Transforms], run: Run) -> tuple[Recipe, Single]:
     """Return the recipe with filter and bending, and its motions, from the groups of `noise` by which it is set."""
     places, grid, frequencies = choose_periods(target), recipe.grid, find_rates(recipe.grid).frequencies
     periods, wanted = target.periods[places], target.pseudo[places]
@@ -192,33 +183,33 @@ def find_filter(target: Target, recipe: Recipe, noise: Sequence[Transforms], ben
     power = guess_power(matrix, periods, wanted)
     for number, size in enumerate(ROUNDS):
         recipe = replace(recipe, gains=gains_of(power, periods, frequencies))
-        motions, peaks = bench.shape(recipe, noise, size)
+        motions, peaks = _shape(recipe, noise, size, run)
         if number == 0:  # the level first: only then can peaks be judged, and nothing has been bent by them yet
-            ratio = float(np.median(wanted / bench.mean(sweep, motions)))
+            ratio = float(np.median(wanted / _watch(sweep, motions, run)[2]))
             motions, peaks, power = motions * np.float32(ratio), peaks * ratio, power * ratio**2
-        _bend(motions, peaks[:, 1], target.pfa, bench, is_last=False)
-        power = improve(matrix, power, np.log(wanted / bench.mean(sweep, motions)), weight)
+        _bend(motions, peaks[:, 1], target.pfa, run, is_last=False)
+        power = improve(matrix, power, np.log(wanted / _watch(sweep, motions, run)[2]), weight)
         by_pfv = bend_to(peaks[:, 0], target.pfv, MOST_SHARPENED, PFV_LOW, PFV_HIGH)
         recipe = replace(recipe, by_pfv=recipe.by_pfv + TURNED * (by_pfv - recipe.by_pfv))
     recipe = replace(recipe, gains=gains_of(power, periods, frequencies))
-    motions, peaks = bench.shape(recipe, noise, GROUP * len(noise))
-    bending = _bend(motions, peaks[:, 1], target.pfa, bench)
+    motions, peaks = _shape(recipe, noise, GROUP * len(noise), run)
+    bending = _bend(motions, peaks[:, 1], target.pfa, run)
     return replace(recipe, steps=(bending,)), motions
 
 
 def _bend(
-    motions: Single, peaks: FloatArray, pfa: float, bench: Bench, *, most: float = MOST_SHARPENED, is_last: bool = True
+    motions: Single, peaks: FloatArray, pfa: float, run: Run, *, most: float = MOST_SHARPENED, is_last: bool = True
 ) -> Bending:
     """Bend motions (k, n) with these PFA (k,) in place so that their mean is met; return how."""
     by_pfa = bend_to(peaks, pfa, most)
     if not is_last:
         by_pfa = min(by_pfa, max(2 * (by_pfa - LAST_PFA), 0.0))
     bending = Bending(pfa, by_pfa)
-    bench.run(lambda rows: bending.apply(motions[rows]), len(motions))
+    run(lambda rows: bending.apply(motions[rows]), len(motions))
     return bending
 
 
-def find_corrections(target: Target, recipe: Recipe, motions: Single, bench: Bench) -> Recipe:
+def find_corrections(target: Target, recipe: Recipe, motions: Single, run: Run) -> Recipe:
     """Correct the mean spectrum and PFA of `motions` (k, n), in place; return the recipe with what was done."""
     periods, sweep = target.periods, Sweep.of(target.periods, recipe.grid.time_step, recipe.grid.count)
     near = (periods > JUDGED_FROM / NEARER) & (periods < BEYOND * matched_to(periods, target.pseudo))
@@ -226,22 +217,22 @@ def find_corrections(target: Target, recipe: Recipe, motions: Single, bench: Ben
     found: list[Bending | Correction] = []
     for kind in STEPS:
         if kind == BEND:
-            found.append(_bend(motions, _pfa(motions), target.pfa, bench, most=LAST_BENT))
+            found.append(_bend(motions, _pfa(motions), target.pfa, run, most=LAST_BENT))
             continue
         if kind == REST and np.abs(errors).max() < ENOUGH:
             continue
         is_left = _widest(np.abs(errors), 2 * AROUND + 1) > LEFT
         watched = np.flatnonzero(near & (is_left if kind == REST else (periods < DIVIDED) == (kind == SHORT)))
         if watched.size:
-            found += _correct(target, recipe.grid, motions, bench, sweep, watched, errors)
+            found += _correct(target, recipe.grid, motions, run, sweep, watched, errors)
     recipe = replace(recipe, steps=recipe.steps + tuple(found))
     recipe = replace(recipe, lift=target.pfa / float(_pfa(motions).mean()))
-    bench.run(lambda rows: lift_rows(motions[rows], recipe.lift), len(motions))
+    run(lambda rows: lift_rows(motions[rows], recipe.lift), len(motions))
     return recipe
 
 
 def _correct(
-    target: Target, grid: Grid, motions: Single, bench: Bench, sweep: Sweep, places: NDArray[np.int64],
+    target: Target, grid: Grid, motions: Single, run: Run, sweep: Sweep, places: NDArray[np.int64],
     errors: FloatArray,
 ) -> list[Correction]:  # fmt: skip
     """Correct the ordinates of motions (k, n) that are most off among their neighbours, in place; none may be.
@@ -249,8 +240,7 @@ def _correct(
     `places` of the target's periods (m,), those of `sweep`, are watched. `errors` (m,), the logarithms by which the
     mean spectrum was off when it was last watched, are renewed there; those of periods that are not judged stay 0.
     """
-    peaks, when = bench.watch(sweep.take(places), motions)
-    mean = np.abs(peaks).mean(axis=0, dtype=np.float64)
+    peaks, when, mean = _watch(sweep.take(places), motions, run)
     errors[places] = np.log(target.pseudo[places] / mean)
     off = np.zeros(errors.size)
     off[places] = np.abs(errors[places])
@@ -263,7 +253,7 @@ def _correct(
         wavelets=build_wavelets(tuple(target.periods), grid.time_step), places=chosen,
         shares=np.expm1(np.clip(applied * errors[chosen], -most, most)).astype(np.float32), sweep=sweep.take(chosen),
     )  # fmt: skip
-    bench.run(lambda rows: correction.add(motions[rows], peaks[rows, own], when[rows, own]), len(motions))
+    run(lambda rows: correction.add(motions[rows], peaks[rows, own], when[rows, own]), len(motions))
     return [correction]
 
 
@@ -335,7 +325,7 @@ def build_generator(
     * `progress`: asked often, here and in `Generator.realise`, whether to stop; CancelledError then.
     """
     phases = Phases(grid, seed, axis, signs)
-    bench = Bench(threads, progress)
+    run = partial(run_groups, threads=threads, progress=progress)
     noise: list[Transforms] = [np.empty((0, 0), np.complex64)] * (CALIBRATED // GROUP)
 
     def draw(group: int) -> None:
@@ -343,8 +333,8 @@ def build_generator(
 
     run_rows(draw, len(noise), threads, progress)
     recipe = Recipe(grid, np.ones(find_rates(grid).frequencies.size, np.float32), target.pfv)  # with no filter yet
-    recipe, motions = find_filter(target, recipe, noise, bench)
-    recipe = find_corrections(target, recipe, motions, bench)
+    recipe, motions = find_filter(target, recipe, noise, run)
+    recipe = find_corrections(target, recipe, motions, run)
     fit, spectra = measure_match(target, motions, grid.time_step, threads, progress)
     return Generator(
         target=target, phases=phases, threads=threads, progress=progress,

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from assess.errors import CancelledError
 from assess.motion.formats import read_records
 from assess.motion.record import treat
-from assess.rocking import planar_kernel as kernel
+from assess.rocking import planar as kernel
 from assess.rocking.ensemble import follow_block, rock_blocks
 from assess.rocking.planar import Body, follow_body, rock_bodies, wall_restitution
 from assess.units import GRAVITY as G
