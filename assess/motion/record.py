@@ -205,22 +205,11 @@ def treat(record: Record, baseline: Baseline = "standard", *, progress: Progress
     It has as many samples as `record`. Velocity and displacement start from zero: at the first sample, or, where
     filtered, at the start of the zeros put before it, so that the pass backward in time leaves no false offset.
     """
-    if baseline != "standard":
-        return _treat(record, baseline, progress)
     with _LOCK:
-        motion = _TREATED.get(record)
-    if motion is None:
-        motion = _treat(record, baseline, progress)
-        with _LOCK:
-            kept = sum(one.acceleration.size for one in _TREATED.values())
-            if kept + motion.acceleration.size <= MOST_TREATED:
-                _TREATED[record] = motion
-    return motion
-
-
-def _treat(record: Record, baseline: Baseline, progress: Progress) -> Motion:
-    values, step = record.acceleration, record.time_step
-    own = slice(None)
+        found = _TREATED.get(record) if baseline == "standard" else None
+    if found is not None:
+        return found
+    values, step, own = record.acceleration, record.time_step, slice(None)
     if not record.corrected:
         values = values - values.mean()
         if baseline == "standard":
@@ -228,18 +217,16 @@ def _treat(record: Record, baseline: Baseline, progress: Progress) -> Motion:
             own = slice(pad, pad + values.size)
             values = high_pass_both_ways(values, step, CORNER, pad, progress)
     velocity = _integral(values, step)
-    displacement = _integral(velocity, step)
-    if own == slice(None):
-        return Motion(values, velocity, displacement, step)
-    # Copies, or each motion would keep its two minutes of pads in memory.
-    return Motion(values[own].copy(), velocity[own].copy(), displacement[own].copy(), step)
-
-
-def scale(motion: Motion, factor: float) -> Motion:
-    """Return a motion whose acceleration, velocity and displacement are `factor` times as large."""
-    return Motion(
-        factor * motion.acceleration, factor * motion.velocity, factor * motion.displacement, motion.time_step
-    )
+    every = values, velocity, _integral(velocity, step)
+    if own != slice(None):  # copies, or each motion would keep its two minutes of pads in memory
+        every = values[own].copy(), velocity[own].copy(), every[2][own].copy()
+    motion = Motion(*every, step)
+    if baseline == "standard":
+        with _LOCK:
+            kept = sum(one.acceleration.size for one in _TREATED.values())
+            if kept + motion.acceleration.size <= MOST_TREATED:
+                _TREATED[record] = motion
+    return motion
 
 
 def treatment(record: Record, baseline: Baseline = "standard") -> Text:

@@ -96,23 +96,22 @@ def _read_suite(folder: Path, paths: list[Path], progress: Progress) -> Suite:
     settled = iter(settle_directions([record for records in found.values() for record in records]))
     found = {path: tuple(islice(settled, len(records))) for path, records in found.items()}
     motions = []
+    vertical, unknown = list[str](), list[str]()
     for path, records in found.items():
         for record in records:
             progress.check()
+            name = f"{path.name}#{record.channel}"
             if record.vertical is False:
-                name = f"{path.name}#{record.channel}" if len(records) > 1 else path.name
-                motions.append((name, treat(record)))
-    channels = [(f"{path.name}#{one.channel}", one.vertical) for path, records in found.items() for one in records]
-    vertical, unknown = (
-        ", ".join(name for name, is_vertical in channels if is_vertical is which) for which in (True, None)
-    )
-    notes = [fill("vertical channels are left out: {channels}", channels=vertical)] if vertical else []
+                motions.append((name if len(records) > 1 else path.name, treat(record)))
+            else:
+                (vertical if record.vertical else unknown).append(name)
+    notes = [fill("vertical channels are left out: {channels}", channels=", ".join(vertical))] if vertical else []
     if unknown:
         notes.append(
             fill(
                 "channels are left out because their direction is not known: {channels} (where they are horizontal, "
                 "give them as plain CSV, with x or y as the heading)",
-                channels=unknown,
+                channels=", ".join(unknown),
             )
         )
     if not motions:

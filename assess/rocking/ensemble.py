@@ -42,68 +42,44 @@ class Rocking:
     impacts: NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Bodies:
-    """m bodies, each one and the same (m, 1) or one a motion (m, k), as arrays of one shape.
+def stack_bodies(
+    breadth: ArrayLike, height: ArrayLike, restitution: ArrayLike, centre: ArrayLike, scale: ArrayLike
+) -> FloatArray:
+    """Return m bodies from (m,) or (m, k) arrays, or numbers, (m, 1 or k, 5); ValueError as of `rock_blocks`.
 
-    * `breadth`, `height`: sizes [m]; breadth is the side parallel to the motion.
-    * `centre`: height of the centre of gravity as a share of the body's [-].
-    * `restitution`: angular velocity after an impact over that before it [-].
-    * `scale`: factor on the motion [-].
+    Their columns: breadth and height [m], centre of gravity as a share of the height, restitution and scale [-].
     """
+    given = [np.asarray(values, dtype=np.float64) for values in (breadth, height, centre, restitution, scale)]
+    rows = np.broadcast_arrays(*(one[:, None] if one.ndim == 1 else one for one in np.atleast_1d(*given)))
+    b, h, z, eta, factor = rows
+    if not (b.ndim == 2 and all((np.isfinite(one) & (one > 0)).all() for one in (b, h))):
+        raise ValueError("breadth and height must be lists of finite numbers above 0 m")
+    if not ((z > 0) & (z < 1)).all():
+        raise ValueError("centre must be above 0 and below 1")
+    if not (np.isfinite(factor) & (factor >= 0)).all():
+        raise ValueError("scale must be finite, and 0 or above")
+    stout = b / h >= block.stocky_limit(z)
+    if (stout & np.isnan(eta)).any():
+        worst, limit = (b / h)[stout].max(), block.stocky_limit(z)[stout].min()
+        raise ValueError(f"a block with B/H of {worst:.3g} does not rock: expected below {limit:.3g}")
+    eta = np.where(np.isnan(eta), block.restitution(b, h, z), eta)
+    if not ((eta >= 0) & (eta <= 1)).all():
+        raise ValueError("restitution must be 0 to 1")
+    return np.stack([b, h, z, eta, factor], axis=2)
 
-    breadth: FloatArray
-    height: FloatArray
-    centre: FloatArray
-    restitution: FloatArray
-    scale: FloatArray
 
-    @classmethod
-    def of(
-        cls, breadth: ArrayLike, height: ArrayLike, restitution: ArrayLike, centre: ArrayLike, scale: ArrayLike
-    ) -> "Bodies":
-        """Build them from (m,) or (m, k) arrays, or numbers; ValueError as of `rock_blocks`."""
-        given = [np.asarray(values, dtype=np.float64) for values in (breadth, height, centre, restitution, scale)]
-        rows = np.broadcast_arrays(*(one[:, None] if one.ndim == 1 else one for one in np.atleast_1d(*given)))
-        b, h, z, eta, factor = (np.array(values) for values in rows)
-        if not (b.ndim == 2 and all((np.isfinite(one) & (one > 0)).all() for one in (b, h))):
-            raise ValueError("breadth and height must be lists of finite numbers above 0 m")
-        if not ((z > 0) & (z < 1)).all():
-            raise ValueError("centre must be above 0 and below 1")
-        if not (np.isfinite(factor) & (factor >= 0)).all():
-            raise ValueError("scale must be finite, and 0 or above")
-        stout = b / h >= block.stocky_limit(z)
-        if (stout & np.isnan(eta)).any():
-            worst, limit = (b / h)[stout].max(), block.stocky_limit(z)[stout].min()
-            raise ValueError(f"a block with B/H of {worst:.3g} does not rock: expected below {limit:.3g}")
-        eta = np.where(np.isnan(eta), block.restitution(b, h, z), eta)
-        if not ((eta >= 0) & (eta <= 1)).all():
-            raise ValueError("restitution must be 0 to 1")
-        return cls(b, h, z, eta, factor)
+def count_parts(bodies: FloatArray, time_step: float) -> NDArray[np.int64]:
+    """Return into how many parts the steps are divided for each body (m,)."""
+    p = block.frequency_parameter(bodies[..., 0], bodies[..., 1], bodies[..., 2]).max(axis=1)
+    return np.asarray(np.ceil(p * time_step / LONGEST_STEP), dtype=np.int64)
 
-    def __len__(self) -> int:
-        return len(self.breadth)
 
-    @property
-    def arrays(self) -> tuple[FloatArray, ...]:
-        """Its arrays in the order of `Bodies.of`, after restitution."""
-        return self.breadth, self.height, self.centre, self.restitution, self.scale
-
-    def take(self, rows: NDArray[np.intp]) -> "Bodies":
-        """Return those at `rows`."""
-        return Bodies(*(one[rows] for one in self.arrays))
-
-    def count_parts(self, time_step: float) -> NDArray[np.int64]:
-        """Return into how many parts the steps are divided for each body (m,)."""
-        p = block.frequency_parameter(self.breadth, self.height, self.centre).max(axis=1)
-        return np.asarray(np.ceil(p * time_step / LONGEST_STEP), dtype=np.int64)
-
-    def to_kernel(self, time_step: float) -> FloatArray:
-        """Return them as the kernel takes them, (m, 1 or k, 5)."""
-        shape = self.breadth, self.height, self.centre
-        p = block.frequency_parameter(*shape)
-        columns = block.critical_angle(*shape), (p * time_step) ** 2, self.restitution, block.threshold(*shape)
-        return np.stack([*columns, self.scale], axis=2)
+def to_kernel(bodies: FloatArray, time_step: float) -> FloatArray:
+    """Return bodies as the kernel takes them, (m, 1 or k, 5)."""
+    *shape, eta, scale = np.moveaxis(bodies, 2, 0)
+    p = block.frequency_parameter(*shape)
+    columns = block.critical_angle(*shape), (p * time_step) ** 2, eta, block.threshold(*shape), scale
+    return np.stack(columns, axis=2)
 
 
 def rock_blocks(
@@ -134,22 +110,21 @@ def rock_blocks(
     * `threads`: share the tiles; neither they nor the order of blocks or of motions change a result.
     * `progress`: asked before each tile whether to stop; CancelledError then.
 
-    Raises ValueError if a size is not above 0, a block without a
-    restitution is too stocky to rock (B/H of 1.41 or more, if uniform), a centre is not within the block, a restitution
-    is outside 0 to 1, or the motions or their time step are not finite numbers of that shape.
+    Raises ValueError if a size is not above 0, a block without a restitution is too stocky to rock (B/H of 1.41 or
+    more, if uniform), a centre is not within the block, a restitution is outside 0 to 1, or the motions or their time
+    step are not finite numbers of that shape.
     """
-    bodies, motions = Bodies.of(breadth, height, restitution, centre, scale), check_motions(motions, time_step)
+    bodies, motions = stack_bodies(breadth, height, restitution, centre, scale), check_motions(motions, time_step)
     which = np.arange(len(bodies))
-    if bodies.breadth.shape[1] == 1:  # each of several equal bodies once
-        sizes, which = np.unique(np.hstack(bodies.arrays), axis=0, return_inverse=True)
-        bodies = Bodies(*(column[:, None] for column in sizes.T))
-    elif bodies.breadth.shape[1] != len(motions):
-        raise ValueError(f"blocks have {bodies.breadth.shape[1]} sizes each, expected 1 or {len(motions)}")
+    if bodies.shape[1] == 1:  # each of several equal bodies once
+        bodies, which = np.unique(bodies, axis=0, return_inverse=True)
+    elif bodies.shape[1] != len(motions):
+        raise ValueError(f"blocks have {bodies.shape[1]} sizes each, expected 1 or {len(motions)}")
     outcome = np.zeros((len(bodies), len(motions), 3))
-    divisions = bodies.count_parts(time_step)
+    divisions = count_parts(bodies, time_step)
     for parts in np.unique(divisions):
         own = np.flatnonzero(divisions == parts)
-        found = _rock_alike(bodies.take(own), divide(motions, int(parts)), time_step / parts, threads, progress)
+        found = _rock_alike(bodies[own], divide(motions, int(parts)), time_step / parts, threads, progress)
         found[..., kernel.FALL] *= np.where(found[..., kernel.FALL] < 0, 1, time_step / parts)
         outcome[own] = found
     outcome = outcome[which.ravel()]
@@ -183,9 +158,11 @@ def divide(motions: NDArray[Any], parts: int) -> FloatArray:
     return padded
 
 
-def _rock_alike(bodies: Bodies, motions: FloatArray, time_step: float, threads: int, progress: Progress) -> FloatArray:
+def _rock_alike(
+    bodies: FloatArray, motions: FloatArray, time_step: float, threads: int, progress: Progress
+) -> FloatArray:
     """Integrate m bodies under padded motions (k, n) [g]; returns the kernel's outcome (m, k, 3)."""
-    blocks = bodies.to_kernel(time_step)
+    blocks = to_kernel(bodies, time_step)
     outcome = np.zeros((len(blocks), len(motions), 3))
     outcome[..., kernel.FALL] = -1.0
     # Tiles of many blocks under few motions, as their size does not change a result
@@ -248,11 +225,11 @@ def follow_block(
     Parameters and errors are those of `rock_blocks`, for one pair: sizes [m], `acceleration` (n,) [m/s2] every
     `time_step` [s], restitution [-] and height of the centre of gravity as a share of the block's [-].
     """
-    body = Bodies.of(breadth, height, restitution, centre, 1.0)
+    body = stack_bodies(breadth, height, restitution, centre, 1.0)
     motions = check_motions(np.asarray(acceleration)[np.newaxis], time_step)
-    parts = int(body.count_parts(time_step)[0])
+    parts = int(count_parts(body, time_step)[0])
     motions, step = divide(motions, parts), time_step / parts
-    blocks, outcome = body.to_kernel(step), np.array([[[0.0, -1.0, 0.0]]])
+    blocks, outcome = to_kernel(body, step), np.array([[[0.0, -1.0, 0.0]]])
     # The first pass counts the steps, the second keeps them, but for the last: together they take milliseconds.
     taken = kernel.rock(blocks, motions, 0, 1, outcome, np.zeros((0, 3))) // kernel.LANES
     trace = np.zeros((min(max(taken - 1, 0), MOST_TRACED), 3))
@@ -263,7 +240,7 @@ def follow_block(
     return Response(
         critical_angle=float(blocks[0, 0, 0]),
         frequency_parameter=float(block.frequency_parameter(breadth, height, centre)),
-        restitution=float(body.restitution[0, 0]), overturned=fall >= 0, rotation=rotation,
+        restitution=float(body[0, 0, 3]), overturned=fall >= 0, rotation=rotation,
         fall_time=fall * step if fall >= 0 else math.nan, impacts=int(struck), times=times * step, theta=theta,
         impact_times=impact_times * step,
     )  # fmt: skip

@@ -68,7 +68,7 @@ def _rock(breadth: Array, height: Array, motions: Array, threads: int) -> float:
 
 
 def _steps(breadth: Array, height: Array, motions: Array) -> int:
-    blocks = ensemble.Bodies.of(breadth, height, math.nan, block.MIDDLE, 1.0).to_kernel(STEP)
+    blocks = ensemble.to_kernel(ensemble.stack_bodies(breadth, height, math.nan, block.MIDDLE, 1.0), STEP)
     outcome = np.zeros((BLOCKS, MOTIONS, 3))
     return int(kernel.rock(blocks, ensemble.divide(motions, 1), 0, MOTIONS, outcome, np.zeros((0, 3))))
 
