@@ -55,8 +55,8 @@ def answer_signals() -> None:
 def start() -> None:
     """Note that a command begins."""
     heard.clear()
-    if traces := sys.modules.get("assess.delivery.traces"):
-        traces.start()
+    if traces := sys.modules.get("assess.delivery.folders"):
+        traces.begin_command()
 
 
 def end(remains: str = "") -> None:
@@ -64,8 +64,8 @@ def end(remains: str = "") -> None:
 
     `remains` says what is kept of the work. Threads that are still integrating are not waited for.
     """
-    traces = sys.modules.get("assess.delivery.traces")
-    if traces is not None and not traces.close():
+    traces = sys.modules.get("assess.delivery.folders")
+    if traces is not None and not traces.may_end():
         return
     has_written = traces is not None and traces.has_delivered()
     remains = remains or ("what was written before is complete" if has_written else "nothing was written")
@@ -95,7 +95,7 @@ def cancel_by_signal(cancel: threading.Event) -> Iterator[None]:
 
     def stop(number: int, _frame: object = None) -> None:
         heard.append(number)
-        traces = sys.modules.get("assess.delivery.traces")
+        traces = sys.modules.get("assess.delivery.folders")
         if traces is not None and traces.is_moving():
             return
         if cancel.is_set():

@@ -16,8 +16,7 @@ from assess.compare.changes import Change, Comparison, Total, count_states
 from assess.compare.comparison_document import View, render_comparison
 from assess.compare.comparison_sheets import write_tables
 from assess.compare.past_run import COMPARISON, PastPiece, PastRun, PastState
-from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
-from assess.delivery.disk import find_digest, flush_file
+from assess.delivery.deliver import Written, deliver, explain_fault, find_digest, flush_file, stage_for
 from assess.delivery.folders import NEW
 from assess.errors import InputError, PdfUnavailableError
 from assess.i18n import gettext as _

@@ -7,6 +7,6 @@ without it is unfinished (`is_unfinished`): every reader says so, and the next r
 both runs by what was set aside, completes it. There are never files of two runs beside one list.
 
 A move that fails is taken back at once. A lock on the folder keeps two processes from moving files into it at once.
-`traces` knows what this process has put on the disk for a time, so that a signal leaves none of it. Not guaranteed:
+What this process has put on the disk for a time is known, so that a signal leaves none of it. Not guaranteed:
 that a file system keeps what it reported as written to the disk.
 """

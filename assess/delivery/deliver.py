@@ -1,14 +1,13 @@
 """What is in a stage brought to its place, whole or not at all: a folder of reports, or some files."""
 
+import hashlib
 import os
 import shutil
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
-from assess.delivery.disk import flush_file, flush_folder, write_through
-from assess.delivery.folders import NEW, OLD, locked, staging
-from assess.delivery.traces import moving
+from assess.delivery.folders import NEW, OLD, locked, moving, staging
 from assess.errors import OutputError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
@@ -75,32 +74,26 @@ def deliver(
     with locked(target, progress):
         old = frozenset(find_old(target))
         progress.check()
-        with moving():
-            return _replace_set(stage, target, old, data)
-
-
-def _replace_set(stage: Path, target: Path, old: Collection[str], data: str) -> list[str]:
-    """Replace the files of an earlier run, its list first and the new list last; return what is gone."""
-    aside, coming = (target / name for name in name_aside(data))
-    names = sorted(path.name for path in (stage / NEW).iterdir() if path.name != data)
-    gone = sorted(name for name in old if name not in names and name != data)
-    with _taken_back(stage, target, [*names, *gone, data, aside.name, coming.name]):
-        if is_unfinished(target, data):  # its files may be of two runs: after a second kill they would be of three
-            for name in old:
+        aside, coming = (target / name for name in name_aside(data))
+        names = sorted(path.name for path in (stage / NEW).iterdir() if path.name != data)
+        gone = sorted(name for name in old if name not in names and name != data)
+        with moving(), _taken_back(stage, target, [*names, *gone, data, aside.name, coming.name]):
+            if is_unfinished(target, data):  # its files may be of two runs: after a second kill they would be of three
+                for name in old:
+                    (target / name).unlink(missing_ok=True)
+            (stage / NEW / data).replace(coming)
+            if (target / data).exists():
+                (target / data).replace(aside)
+            flush_folder(target)
+            for name in names:
+                _bring(stage / NEW / name, target / name)
+            for name in gone:
                 (target / name).unlink(missing_ok=True)
-        (stage / NEW / data).replace(coming)
-        if (target / data).exists():
-            (target / data).replace(aside)
-        flush_folder(target)
-        for name in names:
-            _bring(stage / NEW / name, target / name)
-        for name in gone:
-            (target / name).unlink(missing_ok=True)
-        flush_folder(target)
-        coming.replace(target / data)
-        aside.unlink(missing_ok=True)
-        flush_folder(target)
-    return gone
+            flush_folder(target)
+            coming.replace(target / data)
+            aside.unlink(missing_ok=True)
+            flush_folder(target)
+        return gone
 
 
 @contextmanager
@@ -194,3 +187,45 @@ def _place(stages: Mapping[Path, Path], stack: ExitStack) -> None:
             for path in sorted((stage / NEW).iterdir()):
                 _bring(path, folder / path.name)
             flush_folder(folder)
+
+
+# ---------------------------------------------------------------- bytes that are on the disk
+
+
+def write_through(path: Path, data: bytes) -> None:
+    """Write a file down to the disk, so that a full disk shows here; its folder is made if missing.
+
+    Raises OSError if it cannot be written; `filename` names it, which the system leaves out where the disk is full.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        with path.open("wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as error:
+        raise OSError(error.errno, error.strerror or str(error), str(path)) from None
+
+
+def flush_file(path: Path) -> None:
+    """Have the system put a file's bytes on the disk, where a full disk shows."""
+    with path.open("rb+") as file:
+        os.fsync(file.fileno())
+
+
+def flush_folder(path: Path) -> None:
+    """Have the system put a folder's entries on the disk, where it can: Windows cannot open a folder."""
+    with suppress(OSError):
+        handle = os.open(path, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def find_digest(path: Path) -> str | None:
+    """Return the SHA-256 of a file; None if it is no plain file (missing, a folder, a link). OSError if unreadable."""
+    if path.is_symlink() or not path.is_file():
+        return None
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -1,22 +1,27 @@
-"""Temporary folders, and the lock by which it is known that the process which made one still lives.
+"""Temporary folders, the lock by which it is known that the process which made one still lives, and files in motion.
 
 The system releases a lock when the process that holds it dies: a temporary folder without one was left behind by a
 process that was killed, and is removed by the next process that makes one of its kind there.
 
 Where the system locks a folder itself (Linux and macOS, local disks), nothing is written for a lock. Elsewhere
 (Windows, network file systems) a file `FILE` in the folder is locked, and removed at the end.
+
+A process has one set of signals: whatever ends it early asks here what it has on the disk for a time, and whether it is
+moving files into place.
 """
 
 import os
+import shutil
 import stat
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from assess.delivery.traces import forget_folder, make_folder, remove_folder
 from assess.errors import OutputError
 from assess.progress import SILENT, Progress
 
@@ -180,3 +185,88 @@ def is_left(folder: Path) -> bool:
     found = lock.take() and lock.is_held
     lock.release()
     return found
+
+
+# ---------------------------------------------------------------- what this process has on the disk for a time
+
+
+@dataclass(slots=True)
+class _Traces:
+    """Temporary folders, how many threads are moving files, and whether any have been moved since `begin_command`."""
+
+    folders: set[Path] = field(default_factory=set)
+    moving: int = 0
+    has_delivered: bool = False
+    gate: threading.RLock = field(default_factory=threading.RLock)
+
+
+_TRACES = _Traces()
+
+
+def make_folder(where: Path, prefix: str) -> Path:
+    """Make a temporary folder, for this user alone; it is known before it exists. OSError if it cannot be made."""
+    while True:
+        path = where / f"{prefix}{os.urandom(6).hex()}"
+        _TRACES.folders.add(path)
+        try:
+            path.mkdir(mode=0o700)
+        except OSError as error:
+            _TRACES.folders.discard(path)
+            if not isinstance(error, FileExistsError):
+                raise
+        else:
+            return path
+
+
+def remove_folder(path: Path) -> None:
+    """Remove a temporary folder."""
+    shutil.rmtree(path, ignore_errors=True)
+    forget_folder(path)
+
+
+def forget_folder(path: Path) -> None:
+    """Note that a temporary folder is gone, or is to stay."""
+    _TRACES.folders.discard(path)
+
+
+def remove_all() -> None:
+    """Remove all temporary folders of this process, which is about to end."""
+    for path in list(_TRACES.folders):
+        shutil.rmtree(path, ignore_errors=True)
+
+
+@contextmanager
+def moving() -> Iterator[None]:
+    """Keep the process from being ended by a signal while files are moved into place: it takes milliseconds."""
+    with _TRACES.gate:
+        _TRACES.moving += 1
+    try:
+        yield
+        _TRACES.has_delivered = True
+    finally:
+        with _TRACES.gate:
+            _TRACES.moving -= 1
+
+
+def is_moving() -> bool:
+    """Whether files are being moved into place at this moment."""
+    return _TRACES.moving > 0
+
+
+def has_delivered() -> bool:
+    """Whether files have been moved into place since `begin_command`."""
+    return _TRACES.has_delivered
+
+
+def begin_command() -> None:
+    """Note that a command begins, which has delivered nothing."""
+    _TRACES.has_delivered = False
+
+
+def may_end() -> bool:
+    """Return whether the process may end at this moment; if so, no thread moves a file from here on."""
+    _TRACES.gate.acquire()
+    if is_moving():
+        _TRACES.gate.release()
+        return False
+    return True

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.delivery.traces import make_folder, remove_folder
+from assess.delivery.folders import make_folder, remove_folder
 from assess.errors import InputError, OutputError, Problem
 from assess.i18n import fill
 from assess.methods import NO_WALL, SIDE_UNKNOWN, Cases, Method, all_methods, simulation

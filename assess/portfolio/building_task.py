@@ -21,7 +21,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from assess.delivery.disk import find_digest
+from assess.delivery.deliver import find_digest
 from assess.errors import AssessError, Problem, WorkbookError
 from assess.i18n import fill
 from assess.motion.site_ground import GroundField

@@ -16,9 +16,8 @@ from random import Random
 from typing import Any
 
 from assess import resources
-from assess.delivery.disk import find_digest
-from assess.delivery.folders import NEW, staging
-from assess.delivery.traces import moving
+from assess.delivery.deliver import find_digest
+from assess.delivery.folders import NEW, moving, staging
 from assess.errors import InputError
 from assess.portfolio.background import read_background
 from assess.portfolio.index_file import COLUMNS

@@ -13,8 +13,7 @@ from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING, Any
 
-from assess.delivery.deliver import deliver, explain_fault, stage_for
-from assess.delivery.disk import find_digest, write_through
+from assess.delivery.deliver import deliver, explain_fault, find_digest, stage_for, write_through
 from assess.delivery.folders import NEW, FolderLock
 from assess.errors import InputError, OutputError, PdfUnavailableError, Problem
 from assess.i18n import fill

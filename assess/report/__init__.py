@@ -11,8 +11,7 @@ from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-from assess.delivery.deliver import Written, deliver, explain_fault, stage_for
-from assess.delivery.disk import find_digest, flush_file
+from assess.delivery.deliver import Written, deliver, explain_fault, find_digest, flush_file, stage_for
 from assess.delivery.folders import NEW
 from assess.errors import InputError, OutputError, PdfUnavailableError
 from assess.i18n import fill

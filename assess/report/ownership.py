@@ -12,8 +12,7 @@ from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Any
 
-from assess.delivery.deliver import name_aside
-from assess.delivery.disk import find_digest
+from assess.delivery.deliver import find_digest, name_aside
 from assess.errors import InputError
 from assess.i18n import fill
 from assess.report.pages.pdf_seal import is_sealed

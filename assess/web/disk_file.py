@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from assess.delivery.disk import flush_folder, write_through
+from assess.delivery.deliver import flush_folder, write_through
 from assess.delivery.folders import NEW, staging
 from assess.errors import OutputError
 from assess.i18n import fill

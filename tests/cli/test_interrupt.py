@@ -236,7 +236,7 @@ def test_what_an_interrupt_became_on_its_way_is_no_error(tmp_path):
 def test_work_that_swallows_every_interrupt_is_ended(tmp_path):
     code = (
         "from pathlib import Path\n"
-        "from assess.delivery.traces import make_folder\n"
+        "from assess.delivery.folders import make_folder\n"
         "interrupts.PATIENCE = interrupts.CLEANING = 0.05\n"
         "interrupts.answer_signals()\n"
         "make_folder(Path(sys.argv[1]), 'left-')\n"

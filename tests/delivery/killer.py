@@ -14,7 +14,7 @@ import signal
 import sys
 from pathlib import Path
 
-from assess.delivery import traces
+from assess.delivery import folders
 from assess.delivery.deliver import deliver, is_unfinished, save, stage_for
 from assess.delivery.folders import NEW, sweep
 
@@ -23,7 +23,7 @@ OLD = {"report.html": "old", "items.csv": "old", "gone.pdf": "old", DATA: "old"}
 FRESH = {"report.html": "new", "items.csv": "new", "added.xlsx": "new", DATA: "new"}
 NEXT = dict.fromkeys(FRESH, "next")
 EVENTS = ("open", "os.", "shutil.")
-OWN = str(Path(traces.__file__).parent)
+OWN = str(Path(folders.__file__).parent)
 
 
 class Killer:
