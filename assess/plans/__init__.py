@@ -44,7 +44,11 @@ def read_plan(data: bytes, width: float | None) -> Drawing:
         return Drawing(content, aspect)
     if data.startswith(b"AC10"):
         raise PictureError.about("it is a DWG drawing, which cannot be read. Save it as DXF")
-    if _is_dxf(data):
+    # a DXF begins in binary form, or as text after comments (999)
+    lines = [line.strip() for line in data[:4096].removeprefix(b"\xef\xbb\xbf").splitlines()]
+    while len(lines) > 1 and lines[0] == b"999":
+        lines = lines[2:]
+    if data.startswith(b"AutoCAD Binary DXF") or lines[:2] == [b"0", b"SECTION"]:
         if len(data) > MOST_FILE:
             raise PictureError.about("it is larger than {most} MB. Save it smaller", most=MOST_FILE >> 20)
         from assess.plans.dxf import read_dxf
@@ -69,13 +73,3 @@ def _of_lines(content: bytes, aspect: float, left_out: tuple[str, ...], width: f
 def is_picture(data: bytes) -> bool:
     """Tell whether a file begins as PNG or JPEG does."""
     return data.startswith((PNG, JPEG))
-
-
-def _is_dxf(data: bytes) -> bool:
-    """Tell whether a file begins as a DXF drawing does: as text, after comments (999), or in binary form."""
-    if data.startswith(b"AutoCAD Binary DXF"):
-        return True
-    lines = [line.strip() for line in data[:4096].removeprefix(b"\xef\xbb\xbf").splitlines()]
-    while len(lines) > 1 and lines[0] == b"999":
-        lines = lines[2:]
-    return lines[:2] == [b"0", b"SECTION"]

@@ -7,7 +7,7 @@ import io
 import logging
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from assess.environment import say_install
@@ -42,16 +42,22 @@ def read_dxf(data: bytes) -> tuple[bytes, float, tuple[str, ...], float | None]:
     document = _open(data)
     reader = _Reader(document)
     try:
-        for layout_entity in document.modelspace():
-            reader.take(layout_entity, 0)
+        for entity in document.modelspace():
+            reader.take(entity, 0)
     except PictureError:
         raise
     except Exception:  # what ezdxf raises of damaged entities is of many kinds
         raise damaged() from None
+    from ezdxf.enums import InsertUnits
+    from ezdxf.units import conversion_factor
+
     box = find_box(reader.lines)
     content, aspect = pack(reader.lines, box, is_down=False)
-    factor = _metres(document)
-    return content, aspect, describe_left_out(reader.left_out), None if factor is None else factor * (box[2] - box[0])
+    code, factor = document.header.get("$INSUNITS", 0), 0.0
+    with suppress(ValueError, TypeError, KeyError, ZeroDivisionError):
+        factor = float(conversion_factor(InsertUnits(code), InsertUnits.Meters)) if code else 0.0
+    width = factor * (box[2] - box[0]) if 0 < factor < math.inf else None
+    return content, aspect, describe_left_out(reader.left_out), width
 
 
 def _open(data: bytes) -> "Document":
@@ -64,7 +70,15 @@ def _open(data: bytes) -> "Document":
         ) from None
     logging.getLogger("ezdxf").setLevel(logging.CRITICAL)
     try:
-        _check_size(recover.bytes_loader(io.BytesIO(data)))
+        elements = 0  # group code 0; tags are not kept meanwhile
+        for at, tag in enumerate(recover.bytes_loader(io.BytesIO(data)), start=1):
+            elements += tag.code == 0
+            if elements > MOST_ELEMENTS:
+                raise too_many()
+            if at > MOST_TAGS:
+                raise PictureError.about(
+                    "it has more than {most:,} group codes. Save the walls and doors alone", most=MOST_TAGS
+                )
         document, _auditor = recover.read(io.BytesIO(data))
     except PictureError:
         raise
@@ -73,31 +87,6 @@ def _open(data: bytes) -> "Document":
     if b"EOF" not in data[-64:] and not data.startswith(b"AutoCAD Binary"):
         raise damaged()
     return document
-
-
-def _check_size(tags: Iterable[Any]) -> None:
-    """Raise PictureError where there are too many elements (group code 0) or tags; they are not kept meanwhile."""
-    elements = 0
-    for at, tag in enumerate(tags, start=1):
-        elements += tag.code == 0
-        if elements > MOST_ELEMENTS:
-            raise too_many()
-        if at > MOST_TAGS:
-            raise PictureError.about(
-                "it has more than {most:,} group codes. Save the walls and doors alone", most=MOST_TAGS
-            )
-
-
-def _metres(document: "Document") -> float | None:
-    from ezdxf.enums import InsertUnits
-    from ezdxf.units import conversion_factor
-
-    code = document.header.get("$INSUNITS", 0)
-    try:
-        factor = float(conversion_factor(InsertUnits(code), InsertUnits.Meters)) if code else 0.0
-    except (ValueError, TypeError, KeyError, ZeroDivisionError):
-        return None
-    return factor if 0 < factor < math.inf else None
 
 
 class _Reader:
@@ -117,46 +106,39 @@ class _Reader:
         if entity.dxf.get("layer", "0").lower() in self.hidden or entity.dxf.get("invisible", 0):
             return
         kind = entity.dxftype()
-        if kind == "INSERT":
-            self._insert(entity, depth)
-        elif kind in DRAWN:
-            for line in _outline(entity):
-                self._keep(line)
+        if kind in DRAWN:
+            self._draw(entity)
+        elif kind == "INSERT":
+            self._inserts += 1
+            if self._inserts > MOST_INSERTS:
+                raise too_many()
+            block = self.blocks.get(entity.dxf.name)
+            if block is None or depth >= DEEPEST:
+                self.left_out["INSERT"] += 1
+            elif block.block is not None and block.block.dxf.get("flags", 0) & XREF:
+                self.left_out[f"XREF {entity.dxf.name}"] += 1
+            elif entity.mcount > 1:
+                for one in entity.multi_insert():
+                    self.take(one, depth)
+            else:
+                for one in entity.virtual_entities():
+                    self.take(one, depth + 1)
         elif kind not in SILENT:
             self.left_out[kind] += 1
 
-    def _insert(self, entity: Any, depth: int) -> None:
-        self._inserts += 1
-        if self._inserts > MOST_INSERTS:
-            raise too_many()
-        block = self.blocks.get(entity.dxf.name)
-        if block is None or depth >= DEEPEST:
-            self.left_out["INSERT"] += 1
-        elif block.block is not None and block.block.dxf.get("flags", 0) & XREF:
-            self.left_out[f"XREF {entity.dxf.name}"] += 1
-        elif entity.mcount > 1:
-            for one in entity.multi_insert():
-                self.take(one, depth)
-        else:
-            for one in entity.virtual_entities():
-                self.take(one, depth + 1)
+    def _draw(self, entity: Any) -> None:
+        from ezdxf.path import make_path
 
-    def _keep(self, line: list[tuple[float, float]]) -> None:
-        self._points += len(line)
-        if self._points > MOST_RAW:
-            raise too_many()
-        if not all(abs(x) <= FARTHEST and abs(y) <= FARTHEST for x, y in line):
-            raise damaged()
-        if len(line) > 1:
-            self.lines.append(line)
-
-
-def _outline(entity: Any) -> Iterator[list[tuple[float, float]]]:
-    from ezdxf.path import make_path
-
-    try:
-        path = make_path(entity)
-    except TypeError:
-        return
-    for part in path.sub_paths():
-        yield [(point.x, point.y) for point in part.approximate(CHORDS)]
+        try:
+            path = make_path(entity)
+        except TypeError:
+            return
+        for part in path.sub_paths():
+            line = [(point.x, point.y) for point in part.approximate(CHORDS)]
+            self._points += len(line)
+            if self._points > MOST_RAW:
+                raise too_many()
+            if not all(abs(x) <= FARTHEST and abs(y) <= FARTHEST for x, y in line):
+                raise damaged()
+            if len(line) > 1:
+                self.lines.append(line)

@@ -1,6 +1,6 @@
 """Lines of a drawing as points: normalised to its width, cut at a frame, thinned, packed and unpacked."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,9 +30,8 @@ def too_many() -> PictureError:
     """Build the error for a drawing that has too much in it."""
     return PictureError.about(
         "it has more than {elements:,} elements or {points:,} points. Save the walls and doors alone",
-        elements=MOST_ELEMENTS,
-        points=MOST_POINTS,
-    )
+        elements=MOST_ELEMENTS, points=MOST_POINTS,
+    )  # fmt: skip
 
 
 def empty() -> PictureError:
@@ -100,28 +99,21 @@ def clip(points: FloatArray, box: Box) -> list[FloatArray]:
     low, high = np.array(box[:2]), np.array(box[2:])
     if len(points) > 1 and (points >= low).all() and (points <= high).all():
         return [points]
-    found: list[list[FloatArray]] = []
-    for start, end in _cut(points, low, high):
-        if found and np.array_equal(found[-1][-1], start):
-            found[-1].append(end)
-        else:
-            found.append([start, end])
-    return [np.array(part) for part in found]
-
-
-def _cut(points: FloatArray, low: FloatArray, high: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
     start, way = points[:-1], np.diff(points, axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         one, other = (low - start) / way, (high - start) / way
-    is_still = way == 0
-    is_in = (start >= low) & (start <= high)
+    is_still, is_in = way == 0, (start >= low) & (start <= high)
     enter = np.where(is_still, np.where(is_in, -np.inf, np.inf), np.minimum(one, other)).max(axis=1).clip(0, None)
     leave = np.where(is_still, np.where(is_in, np.inf, -np.inf), np.maximum(one, other)).min(axis=1).clip(None, 1)
+    found: list[list[FloatArray]] = []
     for at in np.flatnonzero(enter < leave).tolist():
-        yield (
-            points[at] if enter[at] == 0 else start[at] + enter[at] * way[at],
-            points[at + 1] if leave[at] == 1 else start[at] + leave[at] * way[at],
-        )
+        begin = points[at] if enter[at] == 0 else start[at] + enter[at] * way[at]
+        end = points[at + 1] if leave[at] == 1 else start[at] + leave[at] * way[at]
+        if found and np.array_equal(found[-1][-1], begin):
+            found[-1].append(end)
+        else:
+            found.append([begin, end])
+    return [np.array(part) for part in found]
 
 
 def describe_left_out(counts: Mapping[str, int]) -> tuple[str, ...]:

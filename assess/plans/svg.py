@@ -11,7 +11,7 @@ import cmath
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from xml.parsers import expat
 
 import numpy as np
@@ -64,7 +64,7 @@ def read_svg(data: bytes) -> tuple[bytes, float, tuple[str, ...]]:
     """
     if len(data) > MOST_BYTES:
         raise PictureError.about("it is larger than {most} MB. Save it smaller", most=MOST_BYTES >> 20)
-    reader = SvgReader()
+    reader = _SvgReader()
     try:
         with np.errstate(all="ignore"):  # what lies beyond all bounds is refused
             reader.parser.Parse(data, True)
@@ -74,13 +74,13 @@ def read_svg(data: bytes) -> tuple[bytes, float, tuple[str, ...]]:
     return *pack(reader.lines, box, is_down=True), describe_left_out(reader.left_out)
 
 
-class SvgReader:
+class _SvgReader:
     """Takes in the elements of an SVG; `lines` are in the units of its root."""
 
     def __init__(self) -> None:
         self.parser = expat.ParserCreate()
         self.parser.StartElementHandler, self.parser.EndElementHandler = self.enter, self.leave
-        self.parser.EntityDeclHandler = self._refuse
+        self.parser.EntityDeclHandler = self.refuse
         self.lines: list[FloatArray] = []
         self.frame: Box | None = None
         self.left_out: Counter[str] = Counter()
@@ -88,57 +88,45 @@ class SvgReader:
         self._skipped = self._elements = self._points = 0
 
     def enter(self, tag: str, attributes: dict[str, str]) -> None:
-        """Take in an element that begins."""
         self._elements += 1
         if self._elements > MOST_ELEMENTS:
             raise too_many()
         if len(self._open) + self._skipped >= DEEPEST:
             raise damaged()
+        prefix, _, name = tag.rpartition(":")
         if self._skipped:
             self._skipped += 1
-            return
-        prefix, _, name = tag.rpartition(":")
-        if not self._open:
-            self._begin(name, attributes)
-        elif prefix not in ("", "svg") or not (name == "g" or name in _SHAPES):
+        elif not self._open:
+            if name != "svg":
+                raise PictureError.about("it is no PNG, JPEG, SVG or DXF file. Save it as one of them")
+            self.frame = _read_frame(attributes)
+            self._open.append((np.eye(3), _read_style(attributes, {})))
+        elif prefix in ("", "svg") and (name == "g" or name in SHAPES):
+            matrix, style = self._open[-1]
+            if "transform" in attributes:
+                matrix = matrix @ _read_transform(attributes["transform"])
+            style = _read_style(attributes, style)
+            self._open.append((matrix, style))
+            is_drawn = style.get("fill", "black") != "none" or style.get("stroke", "none") != "none"
+            is_shown = style.get("display") != "none" and style.get("visibility") not in ("hidden", "collapse")
+            if name != "g" and is_drawn and is_shown:
+                self._draw(name, attributes, matrix)
+        else:
             self._skipped = 1
             if prefix in ("", "svg") and name not in SILENT:
                 self.left_out[name] += 1
-        else:
-            self._inside(name, attributes)
 
     def leave(self, _tag: str) -> None:
-        """Take in the end of an element."""
         if self._skipped:
             self._skipped -= 1
         else:
             self._open.pop()
 
-    def _refuse(self, *_: object) -> None:
+    def refuse(self, *_: object) -> None:
         raise PictureError.about("it declares XML entities, as an attack does. Save it as plain SVG, or as PNG")
 
-    def _begin(self, name: str, attributes: dict[str, str]) -> None:
-        if name != "svg":
-            raise PictureError.about("it is no PNG, JPEG, SVG or DXF file. Save it as one of them")
-        box = read_list(attributes["viewBox"]) if "viewBox" in attributes else None
-        if box is None:
-            width, height = (_read_length(attributes, side) for side in ("width", "height"))
-            box = [0.0, 0.0, width, height] if width and height else None
-        if box is not None:
-            if len(box) != 4 or box[2] <= 0 or box[3] <= 0:
-                raise unreadable()
-            self.frame = (box[0], box[1], box[0] + box[2], box[1] + box[3])
-        self._open.append((np.eye(3), _read_style(attributes, {})))
-
-    def _inside(self, name: str, attributes: dict[str, str]) -> None:
-        matrix, style = self._open[-1]
-        if "transform" in attributes:
-            matrix = matrix @ _read_transform(attributes["transform"])
-        style = _read_style(attributes, style)
-        self._open.append((matrix, style))
-        if name == "g" or not is_shown(style):
-            return
-        for line in _SHAPES[name](attributes):
+    def _draw(self, name: str, attributes: Mapping[str, str], matrix: FloatArray) -> None:
+        for line in _read_shape(name, attributes):
             self._points += max(len(line), 1)
             if self._points > MOST_RAW:
                 raise too_many()
@@ -153,6 +141,19 @@ class SvgReader:
 # ---------------------------------------------------------------- attributes
 
 
+def _read_frame(attributes: Mapping[str, str]) -> Box | None:
+    """Return the viewBox of the root, else its size; None where neither is known."""
+    box = read_list(attributes["viewBox"]) if "viewBox" in attributes else None
+    if box is None:
+        width, height = (_read_length(attributes, side) for side in ("width", "height"))
+        box = [0.0, 0.0, width, height] if width and height else None
+    if box is None:
+        return None
+    if len(box) != 4 or box[2] <= 0 or box[3] <= 0:
+        raise unreadable()
+    return box[0], box[1], box[0] + box[2], box[1] + box[3]
+
+
 def _read_style(attributes: Mapping[str, str], above: Mapping[str, str]) -> dict[str, str]:
     """Return what decides whether a shape is seen: its own, else that of the element round it.
 
@@ -163,12 +164,6 @@ def _read_style(attributes: Mapping[str, str], above: Mapping[str, str]) -> dict
     if above.get("display") == "none":
         own["display"] = "none"
     return {**above, **{name: value.strip() for name, value in own.items()}}
-
-
-def is_shown(style: Mapping[str, str]) -> bool:
-    """Tell whether a shape of this style is seen."""
-    is_drawn = style.get("fill", "black") != "none" or style.get("stroke", "none") != "none"
-    return is_drawn and style.get("display") != "none" and style.get("visibility") not in ("hidden", "collapse")
 
 
 def read_number(text: str) -> float:
@@ -206,90 +201,68 @@ def _read_length(attributes: Mapping[str, str], name: str) -> float | None:
 
 def _read_transform(text: str) -> FloatArray:
     """Return the matrix (3, 3) of a list of transforms, or raise PictureError."""
+    counts = {"matrix": (6,), "translate": (1, 2), "scale": (1, 2), "rotate": (1, 3), "skewX": (1,), "skewY": (1,)}
     at, matrix = 0, np.eye(3)
     while at < len(text):
         found = _STEP.match(text, at)
         if not found:
             raise unreadable()
-        a, b, c, d, e, f = _step(found[1], read_list(found[2]))
-        matrix, at = matrix @ np.array([[a, c, e], [b, d, f], [0.0, 0.0, 1.0]]), found.end()
+        at, name, given = found.end(), found[1], read_list(found[2])
+        if len(given) not in counts[name]:
+            raise unreadable()
+        first, last = given[0], given[-1]
+        cos, sin, tan = (way(math.radians(first)) for way in (math.cos, math.sin, math.tan))
+        x, y = (given[1], given[2]) if name == "rotate" and len(given) == 3 else (0.0, 0.0)
+        a, b, c, d, e, f = {
+            "matrix": given,
+            "translate": (1.0, 0.0, 0.0, 1.0, first, last if len(given) == 2 else 0.0),
+            "scale": (first, 0.0, 0.0, last, 0.0, 0.0),
+            "rotate": (cos, sin, -sin, cos, x - cos * x + sin * y, y - sin * x - cos * y),
+            "skewX": (1.0, 0.0, tan, 1.0, 0.0, 0.0),
+            "skewY": (1.0, tan, 0.0, 1.0, 0.0, 0.0),
+        }[name]
+        matrix = matrix @ np.array([[a, c, e], [b, d, f], [0.0, 0.0, 1.0]])
     return matrix
-
-
-def _step(name: str, given: list[float]) -> Sequence[float]:
-    counts = {"matrix": (6,), "translate": (1, 2), "scale": (1, 2), "rotate": (1, 3), "skewX": (1,), "skewY": (1,)}
-    if len(given) not in counts[name]:
-        raise unreadable()
-    first, last = given[0], given[-1]
-    cos, sin, tan = (way(math.radians(first)) for way in (math.cos, math.sin, math.tan))
-    x, y = (given[1], given[2]) if name == "rotate" and len(given) == 3 else (0.0, 0.0)
-    return {
-        "matrix": given,
-        "translate": (1.0, 0.0, 0.0, 1.0, first, last if len(given) == 2 else 0.0),
-        "scale": (first, 0.0, 0.0, last, 0.0, 0.0),
-        "rotate": (cos, sin, -sin, cos, x - cos * x + sin * y, y - sin * x - cos * y),
-        "skewX": (1.0, 0.0, tan, 1.0, 0.0, 0.0),
-        "skewY": (1.0, tan, 0.0, 1.0, 0.0, 0.0),
-    }[name]
 
 
 # ---------------------------------------------------------------- shapes
 
-Attributes = Mapping[str, str]
 Lines = list[list[complex]]
 """Points of each line, X as the real and Y as the imaginary part."""
-
-
-def _lengths(attributes: Attributes, *names: str) -> list[float]:
-    """Return lengths; none where one of them is relative to something else."""
-    found = [_read_length(attributes, name) for name in names]
-    return [] if None in found else [one for one in found if one is not None]
-
-
-def _line(attributes: Attributes) -> Lines:
-    given = _lengths(attributes, "x1", "y1", "x2", "y2")
-    return [_pair(given)] if given else []
+SHAPES: Mapping[str, tuple[str, ...]] = {
+    "path": (), "polyline": (), "polygon": (), "line": ("x1", "y1", "x2", "y2"), "rect": ("x", "y", "width", "height"),
+    "circle": ("cx", "cy", "r"), "ellipse": ("cx", "cy", "rx", "ry"),
+}  # fmt: skip
+"""The elements whose lines are drawn, with their lengths."""
 
 
 def _pair(given: Sequence[float]) -> list[complex]:
     return [complex(x, y) for x, y in zip(given[::2], given[1::2], strict=False)]
 
 
-def _polyline(attributes: Attributes) -> Lines:
-    points = _pair(read_list(attributes.get("points", "")))
-    return [points] if len(points) > 1 else []
-
-
-def _rect(attributes: Attributes) -> Lines:
-    given = _lengths(attributes, "x", "y", "width", "height")
-    if not given or min(given[2:]) <= 0:
+def _read_shape(name: str, attributes: Mapping[str, str]) -> Lines:
+    """Return the lines of a shape; none where one of its lengths is relative to something else."""
+    if name == "path":
+        return PathReader().read(attributes.get("d", ""))
+    if name in ("polyline", "polygon"):
+        points = _pair(read_list(attributes.get("points", "")))
+        if len(points) < 2:
+            return []
+        return [points if name == "polyline" else [*points, points[0]]]
+    lengths = [_read_length(attributes, one) for one in SHAPES[name]]
+    given = [one for one in lengths if one is not None]
+    if len(given) < len(lengths) or (name != "line" and min(given[2:]) <= 0):
         return []
-    x, y, wide, tall = given
-    return [_pair((x, y, x + wide, y, x + wide, y + tall, x, y + tall, x, y))]
-
-
-def _ellipse(attributes: Attributes, *radii: str) -> Lines:
-    given = _lengths(attributes, "cx", "cy", *radii)
-    if not given or min(given[2:]) <= 0:
-        return []
-    x, y, rx, ry = *given[:3], given[-1]
-    u, v = _ROUND * rx, _ROUND * ry
-    ways = ((rx, 0), (rx, v), (u, ry), (0, ry), (-u, ry), (-rx, v), (-rx, 0), (-rx, -v), (-u, -ry), (0, -ry),
-            (u, -ry), (rx, -v), (rx, 0))  # fmt: skip
+    if name == "line":
+        return [_pair(given)]
+    x, y, wide, tall = *given[:3], given[-1]
+    if name == "rect":
+        return [_pair((x, y, x + wide, y, x + wide, y + tall, x, y + tall, x, y))]
+    u, v = _ROUND * wide, _ROUND * tall
+    ways = ((wide, 0), (wide, v), (u, tall), (0, tall), (-u, tall), (-wide, v), (-wide, 0), (-wide, -v), (-u, -tall),
+            (0, -tall), (u, -tall), (wide, -v), (wide, 0))  # fmt: skip
     points = [complex(x + a, y + b) for a, b in ways]
     return [[points[0], *(point for at in range(0, 12, 3) for point in bend(points[at : at + 4]))]]
-
-
-_SHAPES: Mapping[str, Callable[[Attributes], Lines]] = {
-    "path": lambda attributes: PathReader().read(attributes.get("d", "")),
-    "line": _line,
-    "polyline": _polyline,
-    "polygon": lambda attributes: [[*points, points[0]] for points in _polyline(attributes)],
-    "rect": _rect,
-    "circle": lambda attributes: _ellipse(attributes, "r"),
-    "ellipse": lambda attributes: _ellipse(attributes, "rx", "ry"),
-}
-"""The elements whose lines are drawn."""
 
 
 # ---------------------------------------------------------------- paths
