@@ -11,14 +11,7 @@ from assess.i18n import gettext as _
 from assess.intensity import RATIO, Shaking, name_mmi
 from assess.model import AXES
 from assess.report import words
-from assess.results import (
-    MAY_BE_LOWER,
-    MOTION_FLAGS,
-    FloorRow,
-    MotionRow,
-    Results,
-    SuiteInfo,
-)
+from assess.results import MAY_BE_LOWER, MOTION_FLAGS, FloorRow, MotionRow, Results, SuiteInfo
 from assess.units import GRAVITY
 from assess.workbook.schema import BUILDING
 
