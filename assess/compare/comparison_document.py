@@ -91,16 +91,13 @@ _ROOMS = (
           "The best ways from {n:,} rooms to the street get worse: {names}.", 0, names=""),
     nfill("{n:,} room cannot be compared: {names}.", "{n:,} rooms cannot be compared: {names}.", 0, names=""),
 )  # fmt: skip
-_UNJOINED = nfill(
-    "In {run}, {n:,} room is joined to no exit or stair, so that its way out is not known: {names}.",
-    "In {run}, {n:,} rooms are joined to no exit or stair, so that their way out is not known: {names}.",
-    0, run="", names="",
-)  # fmt: skip
-_UNJOINED_IN_BOTH = nfill(
-    "In both runs, {n:,} room is joined to no exit or stair, so that its way out is not known: {names}.",
-    "In both runs, {n:,} rooms are joined to no exit or stair, so that their way out is not known: {names}.",
-    0, names="",
-)  # fmt: skip
+_UNJOINED = nfill("In {run}, {n:,} room is joined to no exit or stair, so that its way out is not known: {names}.",
+                  "In {run}, {n:,} rooms are joined to no exit or stair, so that their way out is not known: {names}.",
+                  0, run="", names="")  # fmt: skip
+_UNJOINED_IN_BOTH = nfill("In both runs, {n:,} room is joined to no exit or stair, so that its way out is not known: "
+                          "{names}.",
+                          "In both runs, {n:,} rooms are joined to no exit or stair, so that their way out is not "
+                          "known: {names}.", 0, names="")  # fmt: skip
 
 
 def name_direction(direction: Direction) -> str:
@@ -243,44 +240,29 @@ class View:
     @property
     def footer(self) -> str:
         """What stands at the foot of every page."""
-        return _(
-            "Chance of overturning in the scenario of each run, not per year. BEFORE {before}, AFTER {after}.",
-            **self.bases,
-        )
+        return _("Chance of overturning in the scenario of each run, not per year. BEFORE {before}, AFTER {after}.",
+                 **self.bases)  # fmt: skip
 
     def list_warnings(self) -> Iterator[str]:
         """Yield what stands in the way of a comparison."""
         found = self.found
         if self.before.code != self.after.code:
-            yield _(
-                "The two runs were computed by different code of assess: what differs between them may come from the "
-                "program, not from the furniture."
-            )
+            yield _("The two runs were computed by different code of assess: what differs between them may come from "
+                    "the program, not from the furniture.")  # fmt: skip
         if not found.has_same_basis:
-            yield _(
-                "The two runs rest on different bases: BEFORE is {before}, AFTER is {after}. Their chances, classes "
-                "and sums are shown next to each other, but are neither compared nor added up. Run both in the "
-                "same way to compare them.",
-                **self.bases,
-            )
+            yield _("The two runs rest on different bases: BEFORE is {before}, AFTER is {after}. Their chances, "
+                    "classes and sums are shown next to each other, but are neither compared nor added up. Run both in "
+                    "the same way to compare them.", **self.bases)  # fmt: skip
         if found.is_other_building:
-            yield _(
-                "The two runs name different buildings: {before} and {after}. Pieces are matched by their names alone.",
-                before=words.cut(self.before.name, 60),
-                after=words.cut(self.after.name, 60),
-            )
+            yield _("The two runs name different buildings: {before} and {after}. Pieces are matched by their names "
+                    "alone.", before=words.cut(self.before.name, 60), after=words.cut(self.after.name, 60))  # fmt: skip
         if bool(self.before.settings.get("ideal")) != bool(self.after.settings.get("ideal")):
-            yield _(
-                "One run gives the chance if exactly its motion recurred, the other run includes the uncertainty of "
-                "the earthquake and of the pieces: their chances differ for that reason alone."
-            )
+            yield _("One run gives the chance if exactly its motion recurred, the other run includes the uncertainty "
+                    "of the earthquake and of the pieces: their chances differ for that reason alone.")  # fmt: skip
         if abs(self.before.route_risk - self.after.route_risk) > 1e-9 and (found.routes or found.rooms):
-            yield _(
-                "The limit on the chance that a route is blocked differs: {before} and {after}. Every state is by "
-                "the limit of its own run.",
-                before=words.percent(self.before.route_risk),
-                after=words.percent(self.after.route_risk),
-            )
+            yield _("The limit on the chance that a route is blocked differs: {before} and {after}. Every state is by "
+                    "the limit of its own run.", before=words.percent(self.before.route_risk),
+                    after=words.percent(self.after.route_risk))  # fmt: skip
 
     # ------------------------------------------------------------ what gets worse
 
@@ -522,12 +504,9 @@ def render_comparison(
         about = _("Overturning of furniture in an earthquake: two runs compared")
         title = blocks.Title(view.title, words.cut(view.title, 60), view.footer, words.cut(view.conditions, 150))
         counts, *routes = view.tabulate_counts()
-        sums = _(
-            "Expected falls are sums over the free-standing pieces that have a class in their run: BEFORE {before}, "
-            "AFTER {after}. Unconfirmed pieces and pieces by formula only are not in them. For the interval of a sum "
-            "the pieces are taken as fully correlated.",
-            **view.bases,
-        )
+        sums = _("Expected falls are sums over the free-standing pieces that have a class in their run: BEFORE "
+                 "{before}, AFTER {after}. Unconfirmed pieces and pieces by formula only are not in them. For the "
+                 "interval of a sum the pieces are taken as fully correlated.", **view.bases)  # fmt: skip
         counted: list[blocks.Block] = [counts, blocks.Paragraph(sums, "small")]
         counted += routes or [blocks.Paragraph(_("Neither run has evacuation routes."))]
         moved: list[blocks.Block] = [blocks.Paragraph(_("There are no pieces."))]
@@ -586,13 +565,11 @@ def _say_worse(view: View) -> Iterator[blocks.Block]:
         ]
     )
     yield blocks.Paragraph(
-        _(
-            "The tiles count pieces. Pieces are matched by the name of their item. A difference within the sampling "
-            "interval cannot be told from chance at 95 % (Newcombe 1998, method 10, draws of both runs taken as "
-            "independent). Percentages without a range come from the formula only."
-        ),
+        _("The tiles count pieces. Pieces are matched by the name of their item. A difference within the sampling "
+          "interval cannot be told from chance at 95 % (Newcombe 1998, method 10, draws of both runs taken as "
+          "independent). Percentages without a range come from the formula only."),
         "small",
-    )
+    )  # fmt: skip
 
 
 def _list_runs(view: View) -> list[blocks.Block]:
@@ -602,10 +579,8 @@ def _list_runs(view: View) -> list[blocks.Block]:
         cells = (blocks.head([fact.label, *mark]), blocks.Cell(fact.before, "hash"), blocks.Cell(fact.after, "hash"))
         rows.append(blocks.Row(cells, "differs" if fact.differs else ""))
     columns = blocks.list_columns((_("What"), "w30"), (_("BEFORE"), ""), (_("AFTER"), ""))
-    same = _(
-        "Settings and lines of the workbook that are not named are the same in both runs. Made with assess {version}.",
-        version=__version__,
-    )
+    same = _("Settings and lines of the workbook that are not named are the same in both runs. Made with assess "
+             "{version}.", version=__version__)  # fmt: skip
     table = blocks.table(columns, rows, "compared facts-of-two", is_cards=False)
     return [table, blocks.Paragraph(same, "small")]
 

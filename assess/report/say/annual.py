@@ -63,11 +63,10 @@ def list_annual(results: Results, rows: Sequence[ItemResult]) -> Annual | None:
                                 "{n:,} more were not simulated and are not counted.",
                                 found.not_evaluated))  # fmt: skip
     if found.cannot_rock:
-        counted.append(ngettext(
-            "{n:,} more is too stocky to rock and has no chance here; beside a route it falls by the formula.",
-            "{n:,} more are too stocky to rock and have no chance here; beside a route they fall by the formula.",
-            found.cannot_rock,
-        ))  # fmt: skip
+        counted.append(ngettext("{n:,} more is too stocky to rock and has no chance here; beside a route it falls by "
+                                "the formula.",
+                                "{n:,} more are too stocky to rock and have no chance here; beside a route they fall "
+                                "by the formula.", found.cannot_rock))  # fmt: skip
     counted += [
         _("Anchored pieces are not counted."),
         _("≥ marks a lower bound: the motions may be too weak, the hazard curve does not reach far enough, pieces of "
@@ -83,17 +82,11 @@ def _say_building(found: AnnualTables) -> Iterator[str]:
     if not found.pieces:
         yield _("There is no free-standing piece that was simulated and can rock.")
     elif found.is_lower_bound:
-        yield _(
-            "Over all earthquakes that the hazard curve counts, at least {falls} free-standing pieces are expected to "
-            "fall a year.",
-            falls=falls,
-        )
+        yield _("Over all earthquakes that the hazard curve counts, at least {falls} free-standing pieces are expected "
+                "to fall a year.", falls=falls)  # fmt: skip
     else:
-        text = _(
-            "Over all earthquakes that the hazard curve counts, {falls} free-standing pieces are expected to fall a "
-            "year",
-            falls=falls,
-        )
+        text = _("Over all earthquakes that the hazard curve counts, {falls} free-standing pieces are expected to fall "
+                 "a year", falls=falls)  # fmt: skip
         if low is not None and high is not None:
             interval = _("95 % sampling interval {low} to {high}", low=_say_number(low), high=_say_number(high))
             text = f"{text} ({interval})"
@@ -102,38 +95,32 @@ def _say_building(found: AnnualTables) -> Iterator[str]:
     if row is None:
         yield _("No simulated free-standing piece has the Importance life safety.")
     else:
-        yield _(
-            "The chance that any piece of the Importance life safety falls is {year} a year, and {years} in 50 years.",
-            year=say_share(row.chance_a_year, row),
-            years=say_share(row.chance_in_50_years, row),
-        )
+        yield _("The chance that any piece of the Importance life safety falls is {year} a year, and {years} in 50 "
+                "years.", year=say_share(row.chance_a_year, row),
+                years=say_share(row.chance_in_50_years, row))  # fmt: skip
     if found.is_lower_bound or (row and row.at_least):
         yield _("Why these are lower bounds is said in the chapter on chances a year.")
 
 
 def _say_basis(found: AnnualTables, results: Results) -> Iterator[str]:
-    yield _(
-        "The hazard curve is that of the file {file}, from {first} to {last} g.", file=found.file,
-        first=number(found.curve_pga_g[0], ".3g"), last=number(found.curve_pga_g[-1], ".3g"),
-    )  # fmt: skip
+    yield _("The hazard curve is that of the file {file}, from {first} to {last} g.", file=found.file,
+            first=number(found.curve_pga_g[0], ".3g"), last=number(found.curve_pga_g[-1], ".3g"))  # fmt: skip
     if found.latitude is not None and found.longitude is not None:
         place = _("Its site is at {lat:.3f} north, {lon:.3f} east", lat=found.latitude, lon=found.longitude)
         if found.distance_km is not None:
             far = _("{km:.1f} km from the building", km=found.distance_km)
             place = f"{place}, {far}"
         yield f"{place}."
-    yield ngettext(
-        "Every piece that can rock was rocked in {n:,} draw under the motions of the simulation times each of "
-        "{levels} factors, from {first} to {last}: the motions of all floors were taken to grow in proportion to the "
-        "ground PGA, which is {ground:.3g} g in this scenario. Damage to the building, which changes how its floors "
-        "move, is left out.",
-        "Every piece that can rock was rocked in {n:,} draws under the motions of the simulation times each of "
-        "{levels} factors, from {first} to {last}: the motions of all floors were taken to grow in proportion to the "
-        "ground PGA, which is {ground:.3g} g in this scenario. Damage to the building, which changes how its floors "
-        "move, is left out.",
-        found.runs, levels=len(found.factors), first=_say_number(found.factors[0]),
-        last=_say_number(found.factors[-1]), ground=found.ground_pga_g or 0.0,
-    )  # fmt: skip
+    yield ngettext("Every piece that can rock was rocked in {n:,} draw under the motions of the simulation times each "
+                   "of {levels} factors, from {first} to {last}: the motions of all floors were taken to grow in "
+                   "proportion to the ground PGA, which is {ground:.3g} g in this scenario. Damage to the building, "
+                   "which changes how its floors move, is left out.",
+                   "Every piece that can rock was rocked in {n:,} draws under the motions of the simulation times each "
+                   "of {levels} factors, from {first} to {last}: the motions of all floors were taken to grow in "
+                   "proportion to the ground PGA, which is {ground:.3g} g in this scenario. Damage to the building, "
+                   "which changes how its floors move, is left out.", found.runs, levels=len(found.factors),
+                   first=_say_number(found.factors[0]), last=_say_number(found.factors[-1]),
+                   ground=found.ground_pga_g or 0.0)  # fmt: skip
     scatter = (
         _("At a given ground PGA the motions of the floors scatter, with the logarithmic standard deviation of "
           "{beta:.2g} of the workbook.", beta=found.motion_dispersion)
@@ -143,10 +130,8 @@ def _say_basis(found: AnnualTables, results: Results) -> Iterator[str]:
           beta=found.motion_dispersion)
     )  # fmt: skip
     yield scatter
-    yield _(
-        "The shares that fall were integrated over the curve by the lognormal that fits them, or as a table where that "
-        "misses a share by more than 0.05."
-    )
+    yield _("The shares that fall were integrated over the curve by the lognormal that fits them, or as a table where "
+            "that misses a share by more than 0.05.")  # fmt: skip
 
 
 def say_share(value: float, row: AnnualRow) -> str:

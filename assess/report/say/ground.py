@@ -19,17 +19,15 @@ if TYPE_CHECKING:
     from assess.motion.scenario import Profile
     from assess.motion.site_ground import SiteGround
 
-ENVELOPES = fill(
-    "Profiles of building codes are design envelopes, not expected values: they mostly lie above what is recorded, but "
-    "not at mid-height of tall buildings: ASCE 7-22 gives 0.148 g at z/h 0.55 of 575 Market Street, where 0.165 and "
-    "0.223 g were recorded. As long as T1 is unknown, the profiles of EN 1998-1 and NTC 2018 for rigid pieces are the "
-    "lowest of the four; a long T1 lowers that of ASCE 7-22."
-)
+ENVELOPES = fill("Profiles of building codes are design envelopes, not expected values: they mostly lie above what is "
+                 "recorded, but not at mid-height of tall buildings: ASCE 7-22 gives 0.148 g at z/h 0.55 of 575 Market "
+                 "Street, where 0.165 and 0.223 g were recorded. As long as T1 is unknown, the profiles of EN 1998-1 "
+                 "and NTC 2018 for rigid pieces are the lowest of the four; a long T1 lowers that of ASCE "
+                 "7-22.")  # fmt: skip
 """The caution that goes with a code's profile."""
-DRAWN = fill(
-    "assumed: drawn earthquakes through drawn buildings, beams that bend and shear with eight modes of 5 % damping "
-    "(Miranda and Taghavi 2005), on ground motions with the spectrum of Newmark and Hall (1982)"
-)
+DRAWN = fill("assumed: drawn earthquakes through drawn buildings, beams that bend and shear with eight modes of 5 % "
+             "damping (Miranda and Taghavi 2005), on ground motions with the spectrum of Newmark and Hall "
+             "(1982)")  # fmt: skip
 """What is assumed of floors without a record."""
 
 MOST_PLACES = 20
@@ -76,11 +74,9 @@ def _describe_between(motion: MotionRow) -> str:
 def describe_origin(motion: MotionRow) -> str:
     """Return the record of a motion, or how the motion was computed."""
     if motion.profile and motion.height_ratio is not None and motion.amplification is not None:
-        return _(
-            "{code}, {clause}: {factors} of ground PGA {pga} g",
-            code=motion.profile.key, clause=_with_status(motion.clause, motion.profile), factors=factors(motion),
-            pga=words.in_g(motion.pfa_g / motion.amplification),
-        )  # fmt: skip
+        return _("{code}, {clause}: {factors} of ground PGA {pga} g", code=motion.profile.key,
+                 clause=_with_status(motion.clause, motion.profile), factors=factors(motion),
+                 pga=words.in_g(motion.pfa_g / motion.amplification))  # fmt: skip
     if motion.source == "beam":
         values = {"place": words.fixed(motion.height_ratio, 3), "factor": words.fixed(motion.amplification, 3)}
         return _("{ground}: z/h {place}, PFA over the ground's {factor}", ground=_(motion.label), **values)
@@ -102,16 +98,13 @@ def say_signs(results: Results) -> str:
         floors = list(dict.fromkeys(words.cut(one.floor, 20) for one in motions))
         found += [f"{floor} {axis}" for floor in floors] if len(floors) > 1 else []
     if not found:
-        return _(
-            "The motions of a draw have the same random phases on all floors along an axis; the signs of modes from "
-            "floor to floor are not known. What falls together on several floors is therefore an estimate."
-        )
-    return _(
-        "The motions of a draw have the same random phases on all floors along an axis. Between floors that have "
-        "records of one earthquake on one clock ({floors}), the sign of each octave is that of the records. Elsewhere "
-        "the signs of modes are not known, and what falls together on several floors is an estimate.",
-        floors=words.name_first(found, MOST_PLACES),
-    )
+        return _("The motions of a draw have the same random phases on all floors along an axis; the signs of modes "
+                 "from floor to floor are not known. What falls together on several floors is therefore an "
+                 "estimate.")  # fmt: skip
+    return _("The motions of a draw have the same random phases on all floors along an axis. Between floors that have "
+             "records of one earthquake on one clock ({floors}), the sign of each octave is that of the records. "
+             "Elsewhere the signs of modes are not known, and what falls together on several floors is an estimate.",
+             floors=words.name_first(found, MOST_PLACES))  # fmt: skip
 
 
 def factors(motion: MotionRow) -> str:
@@ -140,14 +133,11 @@ def describe_suite(results: Results) -> str:
     suite = results.provenance.suite
     if suite is None:
         return _("no motions of the user's own")
-    return ngettext(
-        "{n:,} motion of the folder {folder}, {scaled}: {names}",
-        "{n:,} motions of the folder {folder}, {scaled}: {names}",
-        len(suite),
-        folder=words.cut(suite.folder, 60),
-        scaled=_("scaled to each floor's PFA") if suite.is_scaled else _("as they are, not scaled"),
-        names=words.clip(", ".join(words.cut(name, 60) for name in suite.names), 400),
-    )
+    return ngettext("{n:,} motion of the folder {folder}, {scaled}: {names}",
+                    "{n:,} motions of the folder {folder}, {scaled}: {names}", len(suite),
+                    folder=words.cut(suite.folder, 60),
+                    scaled=_("scaled to each floor's PFA") if suite.is_scaled else _("as they are, not scaled"),
+                    names=words.clip(", ".join(words.cut(name, 60) for name in suite.names), 400))  # fmt: skip
 
 
 # ---------------------------------------------------------------- codes' profiles
@@ -259,10 +249,8 @@ def _list_drawn(results: Results) -> list[tuple[str, str]]:
     building, origin = results.building, results.provenance
     ratio = _("as filled in")
     if building.ground_pgv is None:
-        ratio = _(
-            "drawn: median {ratio} cm/s per g, deviation of ln 0.40, as in earthquakes of magnitude 6.5 to 7.5",
-            ratio=number(100 * RATIO * GRAVITY, ".0f"),
-        )
+        ratio = _("drawn: median {ratio} cm/s per g, deviation of ln 0.40, as in earthquakes of magnitude 6.5 to 7.5",
+                  ratio=number(100 * RATIO * GRAVITY, ".0f"))  # fmt: skip
         if origin.shaking or (origin.site_ground and origin.site_ground.pgv_cm_s):
             ratio = _("as the source of the ground motion has it")
     period = _("1.4 times ASCE 7-22 Eq. 12.8-7 for the height of the roof, standard deviation of ln 0.35")
@@ -307,10 +295,8 @@ def say_peak(results: Results, name: str, given: str) -> str:
         return _("{given} in the workbook, not used: {reason}", given=given, reason=reason)
     names = {"used": words.in_g(used.pfa_g), "floor": words.cut(used.floor, 20), "source": describe_source(used)}
     if of_anchors:
-        return _(
-            "{used} g on floor {floor}, {source}; {given} of the workbook is used for the code's force on anchors "
-            "only: {reason}", **names, given=given, reason=reason,
-        )  # fmt: skip
+        return _("{used} g on floor {floor}, {source}; {given} of the workbook is used for the code's force on anchors "
+                 "only: {reason}", **names, given=given, reason=reason)  # fmt: skip
     return _("{used} g on floor {floor}, {source}; {given} of the workbook is not used: {reason}", **names, given=given,
              reason=reason)  # fmt: skip
 
@@ -327,17 +313,13 @@ def say_ground_source(results: Results) -> str:
         "sigma": number(found.dispersion, ".3g"), "source": _(found.dispersion_source), "measure": found.measure,
     }  # fmt: skip
     if not uses_scatter(results):
-        scatter = _(
-            "The standard deviation of ln {measure} there is {sigma} ({source}); the chances hold for the median alone "
-            "and leave it out.", **values,
-        )  # fmt: skip
+        scatter = _("The standard deviation of ln {measure} there is {sigma} ({source}); the chances hold for the "
+                    "median alone and leave it out.", **values)  # fmt: skip
     elif own := results.building.own_dispersion:
-        scatter = _(
-            "The standard deviation of ln {measure} there is {sigma} ({source}); with {own}, Motion uncertainty, the "
-            "dispersion of the motions is {motion}, the root of the sum of their squares.",
-            own=number(own, ".3g"),
-            motion=number(results.provenance.uncertainty.motion, ".3g"), **values,
-        )  # fmt: skip
+        scatter = _("The standard deviation of ln {measure} there is {sigma} ({source}); with {own}, Motion "
+                    "uncertainty, the dispersion of the motions is {motion}, the root of the sum of their squares.",
+                    own=number(own, ".3g"), motion=number(results.provenance.uncertainty.motion, ".3g"),
+                    **values)  # fmt: skip
     else:
         scatter = _("The standard deviation of ln {measure} there is {sigma} ({source}), which is drawn.", **values)
     cautions = (f"{_(text)[:1].upper()}{_(text)[1:]}." for text in found.cautions)
@@ -400,10 +382,8 @@ def _say_site(found: "SiteGround", results: Results) -> Iterator[str]:
     if found.pgv_cm_s is None:
         yield _("Ground motion: {source}, with a median PGA of {pga} g at the building.", **values)
     else:
-        yield _(
-            "Ground motion: {source}, with a median PGA of {pga} g and PGV of {pgv} cm/s at the building.",
-            pgv=words.fixed(found.pgv_cm_s, 1), **values,
-        )  # fmt: skip
+        yield _("Ground motion: {source}, with a median PGA of {pga} g and PGV of {pgv} cm/s at the building.",
+                pgv=words.fixed(found.pgv_cm_s, 1), **values)  # fmt: skip
     yield from _say_strength(found.pga_g, found.pgv_cm_s, results)
     yield from _say_factor(results)
 
@@ -429,25 +409,19 @@ def uses_scatter(results: Results) -> bool:
 
 def _say_shaking(found: Shaking, results: Results) -> str:
     scatter = number(found.scatter, "g")
-    texts = [_(
-        "Assumed shaking: no motion of the ground is known for this building. {intensity} is assumed, with its "
-        "median PGV of {pgv} cm/s and PGA of {pga} g ({sources}).",
-        intensity=_(found.choice), pga=words.in_g(found.pga_g), pgv=words.fixed(found.pgv_cm_s, 1),
-        sources=", ".join(found.sources),
-    ), *_say_factor(results)]  # fmt: skip
+    texts = [_("Assumed shaking: no motion of the ground is known for this building. {intensity} is assumed, with its "
+               "median PGV of {pgv} cm/s and PGA of {pga} g ({sources}).", intensity=_(found.choice),
+               pga=words.in_g(found.pga_g), pgv=words.fixed(found.pgv_cm_s, 1),
+               sources=", ".join(found.sources)), *_say_factor(results)]  # fmt: skip
     if uses_scatter(results):
         texts.append(_("PGV scatters about this median by {scatter} (standard deviation of ln PGV), which is drawn.",
                        scatter=scatter))  # fmt: skip
     elif results.has_simulated:
-        texts.append(_(
-            "PGV scatters about this median by {scatter} (standard deviation of ln PGV); the simulation leaves this "
-            "scatter out: its chances hold for the median alone.", scatter=scatter,
-        ))  # fmt: skip
+        texts.append(_("PGV scatters about this median by {scatter} (standard deviation of ln PGV); the simulation "
+                       "leaves this scatter out: its chances hold for the median alone.", scatter=scatter))  # fmt: skip
     else:
-        texts.append(_(
-            "PGV scatters about this median by {scatter} (standard deviation of ln PGV). The formula takes the median; "
-            "the scatter is not in it.", scatter=scatter,
-        ))  # fmt: skip
+        texts.append(_("PGV scatters about this median by {scatter} (standard deviation of ln PGV). The formula takes "
+                       "the median; the scatter is not in it.", scatter=scatter))  # fmt: skip
     return " ".join(texts)
 
 
@@ -584,11 +558,9 @@ def _list_own(results: Results, suite: SuiteInfo) -> Iterator[Caution]:
         elif off < -UNLIKE:
             places.append(_("floor {floor} {axis} ({pfa} g), {off:.0f} % below", **place, off=-100 * off))
     if places and not suite.is_scaled:
-        text = _(
-            "The median PFA of these motions, {pfa} g, differs from that of {places}. Where it is below, chances come "
-            "out too low; they lower no class.",
-            pfa=words.in_g(median), places=words.name_first(places, 8, "; "),
-        )  # fmt: skip
+        text = _("The median PFA of these motions, {pfa} g, differs from that of {places}. Where it is below, chances "
+                 "come out too low; they lower no class.", pfa=words.in_g(median),
+                 places=words.name_first(places, 8, "; "))  # fmt: skip
         short = _("The user's own motions are not as strong as the floors': where weaker, chances come out too low.")
         yield Caution(text, short)
 

@@ -82,19 +82,14 @@ def find_disagreements(results: Results, rows: Sequence[ItemResult]) -> tuple[st
     rocks = next((one.key for one in results.methods if one.tells_rocking), "")
     found = [one for row in rows if (one := _compare(row, _list_verdicts(row, published), rocks))]
     if found:
-        text = ngettext(
-            "On {found:,} of {n:,} row, methods differ by more than one class; most often {highest} lies above "
-            "{lowest} (on {count:,}).",
-            "On {found:,} of {n:,} rows, methods differ by more than one class; most often {highest} lies above "
-            "{lowest} (on {count:,}).",
-            len(rows), found=len(found), **_find_commonest(found),
-        )  # fmt: skip
+        text = ngettext("On {found:,} of {n:,} row, methods differ by more than one class; most often {highest} lies "
+                        "above {lowest} (on {count:,}).",
+                        "On {found:,} of {n:,} rows, methods differ by more than one class; most often {highest} lies "
+                        "above {lowest} (on {count:,}).", len(rows), found=len(found),
+                        **_find_commonest(found))  # fmt: skip
     else:
-        text = ngettext(
-            "On the {n:,} row, the methods lie within one class of each other.",
-            "On all {n:,} rows, the methods lie within one class of each other.",
-            len(rows),
-        )
+        text = ngettext("On the {n:,} row, the methods lie within one class of each other.",
+                        "On all {n:,} rows, the methods lie within one class of each other.", len(rows))  # fmt: skip
     texts = [text]
     for model in methods:
         if model.fitted is None:
@@ -106,13 +101,12 @@ def find_disagreements(results: Results, rows: Sequence[ItemResult]) -> tuple[st
                 other = max(others, key=lambda each: (abs(each.risk - mine[0].risk), abs(each.value - mine[0].value)))
                 own += [differs] if (differs := _compare(row, [other, *mine], rocks)) else []
         if own:
-            texts.append(ngettext(
-                "Counted separately: {model} differs by more than one class from a published method on {found:,} of "
-                "{n:,} row; most often {highest} lies above {lowest} (on {count:,}).",
-                "Counted separately: {model} differs by more than one class from a published method on {found:,} of "
-                "{n:,} rows; most often {highest} lies above {lowest} (on {count:,}).",
-                len(rows), found=len(own), model=_(model.title), **_find_commonest(own),
-            ))  # fmt: skip
+            texts.append(ngettext("Counted separately: {model} differs by more than one class from a published method "
+                                  "on {found:,} of {n:,} row; most often {highest} lies above {lowest} (on {count:,}).",
+                                  "Counted separately: {model} differs by more than one class from a published method "
+                                  "on {found:,} of {n:,} rows; most often {highest} lies above {lowest} (on "
+                                  "{count:,}).", len(rows), found=len(own), model=_(model.title),
+                                  **_find_commonest(own)))  # fmt: skip
         found += own
     groups: dict[tuple[object, ...], list[Disagreement]] = {}
     for each in found:

@@ -57,20 +57,16 @@ def say_apart(results: Sequence[ItemResult]) -> list[str]:
     """Return sentences on the free-standing pieces that stand apart, with what settles them; none where none do."""
     texts = []
     if unconfirmed := list_apart(results, "unconfirmed"):
-        text = ngettext(
-            "{n:,} piece is unconfirmed and counted apart, as nothing is known of its building or its motions may be "
-            "too weak ({names}).",
-            "{n:,} pieces are unconfirmed and counted apart, as nothing is known of their building or their motions "
-            "may be too weak ({names}).",
-            count_pieces(unconfirmed), names=words.name_pieces([one.item.item for one in unconfirmed], 3),
-        )  # fmt: skip
+        text = ngettext("{n:,} piece is unconfirmed and counted apart, as nothing is known of its building or its "
+                        "motions may be too weak ({names}).",
+                        "{n:,} pieces are unconfirmed and counted apart, as nothing is known of their building or "
+                        "their motions may be too weak ({names}).", count_pieces(unconfirmed),
+                        names=words.name_pieces([one.item.item for one in unconfirmed], 3))  # fmt: skip
         texts.append(f"{_add_risky(text, unconfirmed)} {' '.join(list_ways_to_settle(unconfirmed))}")
     if left := list_apart(results, "formula"):
-        text = ngettext(
-            "{n:,} piece was not simulated and is counted apart, by formula only.",
-            "{n:,} pieces were not simulated and are counted apart, by formula only.",
-            count_pieces(left),
-        )
+        text = ngettext("{n:,} piece was not simulated and is counted apart, by formula only.",
+                        "{n:,} pieces were not simulated and are counted apart, by formula only.",
+                        count_pieces(left))  # fmt: skip
         texts.append(_add_risky(text, left))
     return texts
 

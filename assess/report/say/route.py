@@ -126,12 +126,9 @@ def say_basis(chance: Chance) -> str:
     elif chance.is_joint:
         known = ngettext("{n:,} draw, all together", "{n:,} draws, all together", chance.runs)
     elif chance.unverified:
-        known = ngettext(
-            "bounds: {unverified:,} of {n:,} piece by the formula's chance alone",
-            "bounds: {unverified:,} of {n:,} pieces by the formula's chance alone",
-            chance.pieces,
-            unverified=chance.unverified,
-        )
+        known = ngettext("bounds: {unverified:,} of {n:,} piece by the formula's chance alone",
+                         "bounds: {unverified:,} of {n:,} pieces by the formula's chance alone", chance.pieces,
+                         unverified=chance.unverified)  # fmt: skip
     else:
         known = _("bounds: the pieces were decided after different numbers of draws")
     if not chance.unconfirmed:
@@ -173,61 +170,38 @@ def list_cautions(routes: RouteTables) -> list[str]:
     """Return the assumptions of the evaluation of routes, and what it leaves out."""
     raised = {flag for one in routes.segments for near in one.pieces for flag in near.flags}
     doubts = (
-        _(
-            "A piece whose class is not confirmed counts as standing and as fallen. A segment, route "
-            "or room whose state differs between the two is not known, and is left out of expected numbers; what is "
-            "blocked with such pieces standing is blocked."
-        ),
-        _(
-            "What to fix, and the chances if anchors fail, count unconfirmed pieces as fallen, which is on the safe "
-            "side."
-        ),
-    )
+        _("A piece whose class is not confirmed counts as standing and as fallen. A segment, route or room whose state "
+          "differs between the two is not known, and is left out of expected numbers; what is blocked with such pieces "
+          "standing is blocked."),
+        _("What to fix, and the chances if anchors fail, count unconfirmed pieces as fallen, which is on the safe "
+          "side."),
+    )  # fmt: skip
     return [
-        _(
-            "This is screening. No published rule exists for how much of a route a fallen piece takes; the following "
-            "is used."
-        ),
-        _(
-            "A piece counts as falling toward the route unless the plan shows that it cannot reach it. Fallen, it "
-            "covers Height × Width from its edge on, and where it stood."
-        ),
-        _(
-            "Walls are known only where Routes names the Room of a segment: placed pieces of other rooms do not count "
-            "there. Where it is blank, they count through a wall as well."
-        ),
-        _(
-            "The width left is the smallest that some chain of fallen pieces cuts off. A piece known by its Edge "
-            "distance alone may stand at any place and face any other."
-        ),
-        _(
-            "A segment is blocked if the width left is below the required one; a route is blocked if a room or an open "
-            "end that it serves is cut off from its way out, and a room if all its ways to the street are."
-        ),
-        _(
-            "Segments, routes and the ways of rooms that are blocked under the recorded motion itself count as blocked "
-            "whatever their chance."
-        ),
-        _(
-            "Not known: a piece without a position or Route may stand in the way, a stair has no Clear width, or the "
-            "class of a piece is not confirmed. Pieces without a position or Route matter where the chance that any "
-            "of them falls could change the state; anchored pieces and those on another floor or in another room do "
-            "not matter. Nothing falls on a stair but pieces that name it."
-        ),
+        _("This is screening. No published rule exists for how much of a route a fallen piece takes; the following is "
+          "used."),
+        _("A piece counts as falling toward the route unless the plan shows that it cannot reach it. Fallen, it covers "
+          "Height × Width from its edge on, and where it stood."),
+        _("Walls are known only where Routes names the Room of a segment: placed pieces of other rooms do not count "
+          "there. Where it is blank, they count through a wall as well."),
+        _("The width left is the smallest that some chain of fallen pieces cuts off. A piece known by its Edge "
+          "distance alone may stand at any place and face any other."),
+        _("A segment is blocked if the width left is below the required one; a route is blocked if a room or an open "
+          "end that it serves is cut off from its way out, and a room if all its ways to the street are."),
+        _("Segments, routes and the ways of rooms that are blocked under the recorded motion itself count as blocked "
+          "whatever their chance."),
+        _("Not known: a piece without a position or Route may stand in the way, a stair has no Clear width, or the "
+          "class of a piece is not confirmed. Pieces without a position or Route matter where the chance that any of "
+          "them falls could change the state; anchored pieces and those on another floor or in another room do not "
+          "matter. Nothing falls on a stair but pieces that name it."),
         _("Not counted: pieces that slide or roll on castors, spilt contents, doors that jam or are shut, and people."),
-        _(
-            "Chances assume that all anchors hold. Simulated pieces fall as they did draw by draw: a draw is one "
-            "earthquake, stronger or weaker by the same factor on all floors. Others fall independently. The results "
-            "for full independence and full correlation are given as well, as equal pieces fall together."
-        ),
-        _(
-            "Where not all pieces of a route were simulated in the same draws, its chance is the largest of the three, "
-            "with their range in brackets. Where there are too many outcomes to evaluate all, {n:,} are drawn at "
-            "random.",
-            n=routes.draws,
-        ),
+        _("Chances assume that all anchors hold. Simulated pieces fall as they did draw by draw: a draw is one "
+          "earthquake, stronger or weaker by the same factor on all floors. Others fall independently. The results for "
+          "full independence and full correlation are given as well, as equal pieces fall together."),
+        _("Where not all pieces of a route were simulated in the same draws, its chance is the largest of the three, "
+          "with their range in brackets. Where there are too many outcomes to evaluate all, {n:,} are drawn at random.",
+          n=routes.draws),
         *(doubts if raised.intersection(DOUBTS.values()) else ()),
-    ]
+    ]  # fmt: skip
 
 
 def say_occupants(one: SegmentRow) -> str:
@@ -325,13 +299,9 @@ def list_widths() -> list[tuple[str, list[str]]]:
 
 def say_default_width() -> str:
     """Return the width that counts where the workbook gives none, and what an occupant needs."""
-    return _(
-        "Where the workbook gives no Required width, {default:g} m is taken. Occupants need {level:g} mm each, on "
-        "stairs {stair:g} mm (0.2 and 0.3 in, International Building Code, section 1005.3).",
-        default=DEFAULT_WIDTH,
-        level=LEVEL / LENGTH["mm"],
-        stair=STAIR / LENGTH["mm"],
-    )
+    return _("Where the workbook gives no Required width, {default:g} m is taken. Occupants need {level:g} mm each, on "
+             "stairs {stair:g} mm (0.2 and 0.3 in, International Building Code, section 1005.3).",
+             default=DEFAULT_WIDTH, level=LEVEL / LENGTH["mm"], stair=STAIR / LENGTH["mm"])  # fmt: skip
 
 
 # ---------------------------------------------------------------- sentences
@@ -389,14 +359,9 @@ def count_rooms(routes: RouteTables) -> list[str]:
     """Return how many rooms have a best way to the street in which state, and which have none in the workbook."""
     texts, unjoined = [], routes.unjoined_rooms
     if routes.rooms:
-        texts.append(
-            ngettext(
-                "Best way from {n:,} room to the street: {states}.",
-                "Best way from each of {n:,} rooms to the street: {states}.",
-                len(routes.rooms),
-                states=_count_states([one.state for one in routes.rooms]),
-            )
-        )
+        texts.append(ngettext("Best way from {n:,} room to the street: {states}.",
+                              "Best way from each of {n:,} rooms to the street: {states}.", len(routes.rooms),
+                              states=_count_states([one.state for one in routes.rooms])))  # fmt: skip
     if unjoined:
         texts.append(ngettext(
             "The workbook joins {n:,} more room to no exit or stair, so that its way out is not known: {named}. Add "
@@ -431,11 +396,8 @@ def say_uncounted(routes: RouteTables) -> str:
     count = routes.uncounted_pieces
     if not count:
         return ""
-    left_out = ngettext(
-        "{n:,} piece has no usable position or route and is left out.",
-        "{n:,} pieces have no usable position or route and are left out.",
-        count,
-    )
+    left_out = ngettext("{n:,} piece has no usable position or route and is left out.",
+                        "{n:,} pieces have no usable position or route and are left out.", count)  # fmt: skip
     rows: list[RouteRow | RoomRow] = [*routes.routes, *routes.rooms]
     if any(row.what in UNPLACED for one in rows for row in one.missing):
         return left_out

@@ -74,20 +74,13 @@ class Verified:
         if not self.done:
             return _("Not simulated"), _("classes come from a published formula; no rocking has been simulated")
         texts = [
-            ngettext(
-                "rocking of {done:,} of {n:,} row simulated, {motions}",
-                "rocking of {done:,} of {n:,} rows simulated, {motions}",
-                len(self.run), done=len(self.done), motions=self.motions,
-            )
+            ngettext("rocking of {done:,} of {n:,} row simulated, {motions}",
+                     "rocking of {done:,} of {n:,} rows simulated, {motions}", len(self.run), done=len(self.done),
+                     motions=self.motions)
         ]  # fmt: skip
         if self.unconfirmed:
-            texts.append(
-                ngettext(
-                    "{n:,} row is unconfirmed and counted apart",
-                    "{n:,} rows are unconfirmed and counted apart",
-                    len(self.unconfirmed),
-                )
-            )
+            texts.append(ngettext("{n:,} row is unconfirmed and counted apart",
+                                  "{n:,} rows are unconfirmed and counted apart", len(self.unconfirmed)))  # fmt: skip
         if self.left:
             texts.append(_("the other rows have a class by a published formula, and are counted apart"))
         return _("Partly simulated") if self.left else _("Simulated"), "; ".join(texts)
@@ -97,10 +90,9 @@ class Verified:
         """The foot of every page, but for what `list_conditions` adds."""
         if not self.done:
             return f"{say_scenario(self.run)} {self.sentence}"
-        extent = ngettext(
-            "Simulated: {done:,} of {n:,} row; {interval}.", "Simulated: {done:,} of {n:,} rows; {interval}.",
-            len(self.run), done=len(self.done), interval=say_range(self.run),
-        )  # fmt: skip
+        extent = ngettext("Simulated: {done:,} of {n:,} row; {interval}.",
+                          "Simulated: {done:,} of {n:,} rows; {interval}.", len(self.run), done=len(self.done),
+                          interval=say_range(self.run))  # fmt: skip
         return f"{say_scenario(self.run)} {extent}"
 
     @property
@@ -123,20 +115,14 @@ class Verified:
         if not self.done:
             text = _("Adopted risk: {formula}. The other methods are shown for comparison.", **titles)
         else:
-            text = _(
-                "Adopted risk: {simulation} (direct integration) where a piece was simulated, otherwise {formula}, "
-                "counted apart. The other methods are shown for comparison.", **titles,
-            )  # fmt: skip
+            text = _("Adopted risk: {simulation} (direct integration) where a piece was simulated, otherwise "
+                     "{formula}, counted apart. The other methods are shown for comparison.", **titles)  # fmt: skip
         if any(one.adopted.has_simulated for one in self.unconfirmed):
-            text += " " + _(
-                "Where nothing is known of the building, the class is at least that of the faster third of the draws, "
-                "unconfirmed."
-            )
+            text += " " + _("Where nothing is known of the building, the class is at least that of the faster third of "
+                            "the draws, unconfirmed.")  # fmt: skip
         if not all(one.adopted.has_simulated for one in self.unconfirmed):
-            text += " " + _(
-                "Where simulation gave a lower class under motions weaker than the floor's, the class is that of "
-                "{formula}, unconfirmed.", **titles,
-            )  # fmt: skip
+            text += " " + _("Where simulation gave a lower class under motions weaker than the floor's, the class is "
+                            "that of {formula}, unconfirmed.", **titles)  # fmt: skip
         return text
 
     @property
@@ -144,11 +130,9 @@ class Verified:
         """How much was simulated, and what that changed, in one sentence."""
         if not self.done:
             return _("Not simulated.")
-        extent = ngettext(
-            "Simulated by direct integration: {done:,} of {n:,} row, {motions} each",
-            "Simulated by direct integration: {done:,} of {n:,} rows, {motions} each",
-            len(self.run), done=len(self.done), motions=count_motions(self.run),
-        )  # fmt: skip
+        extent = ngettext("Simulated by direct integration: {done:,} of {n:,} row, {motions} each",
+                          "Simulated by direct integration: {done:,} of {n:,} rows, {motions} each", len(self.run),
+                          done=len(self.done), motions=count_motions(self.run))  # fmt: skip
         changes = [
             _("class lowered: {pieces}", pieces=count_rows(self.lowered)) if self.lowered else "",
             _("class raised: {pieces}", pieces=count_rows(self.raised)) if self.raised else "",
@@ -190,11 +174,9 @@ def describe_trials(verified: Verified) -> list[str]:
         return []
     results, restitution = verified.run, verified.run.building.restitution
     origin, looks = results.provenance, results.provenance.looks
-    extent = [_(
-        "The rocking of {done:,} of {rows} was integrated step by step (Housner's equations of a rigid block, see "
-        "Methods). The chance is the share of draws in which the piece overturns, each of one motion.",
-        done=len(verified.done), rows=words.plural(len(results), "row"),
-    )]  # fmt: skip
+    extent = [_("The rocking of {done:,} of {rows} was integrated step by step (Housner's equations of a rigid block, "
+                "see Methods). The chance is the share of draws in which the piece overturns, each of one motion.",
+                done=len(verified.done), rows=words.plural(len(results), "row"))]  # fmt: skip
     if n := sum("does_not_rock" in one.adopted.flags for one in results):
         extent.append(ngettext("{n:,} row is too stocky to rock (B/H of {limit:.2f} or more).",
                                "{n:,} rows are too stocky to rock (B/H of {limit:.2f} or more).",
@@ -216,13 +198,11 @@ def describe_trials(verified: Verified) -> list[str]:
     ]  # fmt: skip
     texts = [" ".join(extent), _say_motions(results), " ".join(draws)]
     if results.settings.runs == AUTO:
-        text = _(
-            "Motions were added until every class was statistically resolved, each piece's interval lying within one "
-            "class. This was checked after {looks} and {last:,} motions, with an interval (z = {z:g}) that holds with "
-            "95 % for all {checks} checks together.",
-            looks=", ".join(number(look, ",") for look in looks[:-1]), last=looks[-1],
-            z=origin.interval_z, checks=len(looks),
-        )  # fmt: skip
+        text = _("Motions were added until every class was statistically resolved, each piece's interval lying within "
+                 "one class. This was checked after {looks} and {last:,} motions, with an interval (z = {z:g}) that "
+                 "holds with 95 % for all {checks} checks together.",
+                 looks=", ".join(number(look, ",") for look in looks[:-1]), last=looks[-1], z=origin.interval_z,
+                 checks=len(looks))  # fmt: skip
         left = (_("Undecided after {last:,}: {pieces}.", last=looks[-1], pieces=name_some(verified.undecided))
                 if verified.undecided else _("No piece is left undecided."))  # fmt: skip
         texts.append(f"{text} {left}")
@@ -231,18 +211,14 @@ def describe_trials(verified: Verified) -> list[str]:
 
 def _say_motions(results: Results) -> str:
     if results.provenance.suite:
-        return _(
-            "The motions are the user's own: {motions}. Motion k serves every floor and axis.",
-            motions=describe_suite(results),
-        )
+        return _("The motions are the user's own: {motions}. Motion k serves every floor and axis.",
+                 motions=describe_suite(results))  # fmt: skip
     runs = results.settings.runs
-    made = _(
-        "On each floor and axis {motions} were generated (seed {seed}). Their mean 5 % response spectrum matches that "
-        "of the floor's recorded motion, or of drawn earthquakes in drawn buildings where no record is known. The "
-        "former differ by their random phases alone, which is less than earthquakes differ.",
-        motions=_("as many motions as are needed") if runs == AUTO else words.plural(int(runs), "motion"),
-        seed=results.settings.seed,
-    )
+    made = _("On each floor and axis {motions} were generated (seed {seed}). Their mean 5 % response spectrum matches "
+             "that of the floor's recorded motion, or of drawn earthquakes in drawn buildings where no record is "
+             "known. The former differ by their random phases alone, which is less than earthquakes differ.",
+             motions=_("as many motions as are needed") if runs == AUTO else words.plural(int(runs), "motion"),
+             seed=results.settings.seed)  # fmt: skip
     return f"{made} {say_signs(results)}"
 
 
@@ -252,26 +228,21 @@ def _say_draws(results: Results) -> str:
         return _("The adopted chance is the one if exactly this motion recurred and every piece were exactly as given.")
     parts = []
     if uncertainty.motion:
-        parts.append(_(
-            "In draw k, motion k is scaled by exp({dispersion} ε), with one normal number ε for the whole building "
-            "({source}).",
-            dispersion=number(uncertainty.motion, ".3g"), source=say_source(results),
-        ))  # fmt: skip
+        parts.append(_("In draw k, motion k is scaled by exp({dispersion} ε), with one normal number ε for the whole "
+                       "building ({source}).", dispersion=number(uncertainty.motion, ".3g"),
+                       source=say_source(results)))  # fmt: skip
     parts += filter(None, [say_draws(results)])
     if uncertainty.piece:
-        parts.append(_(
-            "Each piece draws its base × N({mean}, {base}), its height × N(1, {height}), its centre of gravity N(as "
-            "given, {centre}) of its height and its restitution N(as given or Housner's, {restitution}), as assumed.",
-            mean=number(uncertainty.base[0]), base=number(uncertainty.base[1]), height=number(uncertainty.height),
-            centre=number(uncertainty.centre), restitution=number(uncertainty.restitution),
-        ))  # fmt: skip
+        parts.append(_("Each piece draws its base × N({mean}, {base}), its height × N(1, {height}), its centre of "
+                       "gravity N(as given, {centre}) of its height and its restitution N(as given or Housner's, "
+                       "{restitution}), as assumed.", mean=number(uncertainty.base[0]),
+                       base=number(uncertainty.base[1]), height=number(uncertainty.height),
+                       centre=number(uncertainty.centre), restitution=number(uncertainty.restitution)))  # fmt: skip
         if count_scanned(results):
-            parts.append(_(
-                "A piece whose sizes were measured by a scan draws its base × N({mean}, {base}) and its height × N(1, "
-                "{height}), as assumed: no accuracy of such sizes is published.",
-                mean=number(uncertainty.scanned_base[0]), base=number(uncertainty.scanned_base[1]),
-                height=number(uncertainty.scanned_height),
-            ))  # fmt: skip
+            parts.append(_("A piece whose sizes were measured by a scan draws its base × N({mean}, {base}) and its "
+                           "height × N(1, {height}), as assumed: no accuracy of such sizes is published.",
+                           mean=number(uncertainty.scanned_base[0]), base=number(uncertainty.scanned_base[1]),
+                           height=number(uncertainty.scanned_height)))  # fmt: skip
     if parts:
         parts.append(_("Normal numbers are cut at {cut:g} standard deviations.", cut=uncertainty.cut))
     return " ".join([*parts, _("“If exactly this motion recurred” is the chance without either uncertainty.")])
@@ -281,12 +252,10 @@ def list_misfits(results: Results) -> list[str]:
     """Return which floor motions the generated motions do not match well."""
     made = [(one, one.ensemble.fit) for one in results.motions if one.ensemble is not None]
     return [
-        _(
-            "Floor {floor} {axis}: PFA and the spectrum cannot both be matched. PFA takes precedence; the mean "
-            "spectrum deviates by {mean} on average, and by {most} at {period:.2f} s, where it is worst.",
-            floor=words.cut(motion.floor, 20), axis=motion.axis, mean=words.deviation(fit.mean_deviation),
-            most=words.deviation(abs(fit.worst_deviation)), period=fit.worst_period,
-        )
+        _("Floor {floor} {axis}: PFA and the spectrum cannot both be matched. PFA takes precedence; the mean spectrum "
+          "deviates by {mean} on average, and by {most} at {period:.2f} s, where it is worst.",
+          floor=words.cut(motion.floor, 20), axis=motion.axis, mean=words.deviation(fit.mean_deviation),
+          most=words.deviation(abs(fit.worst_deviation)), period=fit.worst_period)
         for motion, fit in made if fit is not None and fit.mean_deviation > 0.10
     ]  # fmt: skip
 
@@ -334,11 +303,9 @@ def list_conditions(results: Results) -> list[str]:
         texts.append(_("Every floor's motion times {scale}", scale=number(settings.scale, "g")))
     if isinstance(settings.anchor, int):
         if settings.anchor:
-            texts.append(ngettext(
-                "Taken as anchored and holding: the first entry of what to fix",
-                "Taken as anchored and holding: the first {n:,} entries of what to fix",
-                settings.anchor,
-            ))  # fmt: skip
+            texts.append(ngettext("Taken as anchored and holding: the first entry of what to fix",
+                                  "Taken as anchored and holding: the first {n:,} entries of what to fix",
+                                  settings.anchor))  # fmt: skip
     elif settings.anchor:
         named = words.name_pieces(settings.anchor, 4, 40)
         texts.append(_("Taken as anchored and holding: {items}", items=named))
@@ -350,37 +317,30 @@ def say_assumed(results: Results) -> str:
     if not results.has_simulated:
         return ""
     if results.settings.ideal:
-        return _(
-            "It is assumed that exactly this motion recurs and that every piece is exactly as given: nothing is varied."
-        )
+        return _("It is assumed that exactly this motion recurs and that every piece is exactly as given: nothing is "
+                 "varied.")  # fmt: skip
     scanned, dispersion = count_scanned(results), results.provenance.uncertainty.motion
     if dispersion:
-        motion = _(
-            "Chances hold for an earthquake like this one: each draw scales the motions of the whole building by one "
-            "factor, with a dispersion of {dispersion} (standard deviation of ln amplitude; {source}).",
-            dispersion=number(dispersion, ".3g"), source=say_source(results),
-        )  # fmt: skip
+        motion = _("Chances hold for an earthquake like this one: each draw scales the motions of the whole building "
+                   "by one factor, with a dispersion of {dispersion} (standard deviation of ln amplitude; {source}).",
+                   dispersion=number(dispersion, ".3g"), source=say_source(results))  # fmt: skip
     elif _has_drawn(results):
         motion = _("Chances hold for earthquakes with the given peaks: ground motions and buildings are drawn.")
     else:
-        motion = _(
-            "The motions are not scaled, as Motion uncertainty is 0 in the workbook: exactly this motion recurs."
-        )
+        motion = _("The motions are not scaled, as Motion uncertainty is 0 in the workbook: exactly this motion "
+                   "recurs.")  # fmt: skip
     if results.provenance.uncertainty.piece:
         piece = _("Sizes, centre of gravity and restitution of each piece are varied.")
-        of_scanned = ngettext(
-            "Those of {n:,} piece were measured by a scan, which is less accurate: its sizes are varied more.",
-            "Those of {n:,} pieces were measured by a scan, which is less accurate: their sizes are varied more.",
-            scanned,
-        )
+        of_scanned = ngettext("Those of {n:,} piece were measured by a scan, which is less accurate: its sizes are "
+                              "varied more.",
+                              "Those of {n:,} pieces were measured by a scan, which is less accurate: their sizes are "
+                              "varied more.", scanned)  # fmt: skip
     else:
         piece = _("Sizes, centre of gravity and restitution are exactly as given.")
-        of_scanned = ngettext(
-            "Those of {n:,} piece were measured by a scan, which is less accurate: its chance may be higher or lower.",
-            "Those of {n:,} pieces were measured by a scan, which is less accurate: their chances may be higher or "
-            "lower.",
-            scanned,
-        )
+        of_scanned = ngettext("Those of {n:,} piece were measured by a scan, which is less accurate: its chance may be "
+                              "higher or lower.",
+                              "Those of {n:,} pieces were measured by a scan, which is less accurate: their chances "
+                              "may be higher or lower.", scanned)  # fmt: skip
     return " ".join((motion, piece, *([of_scanned] if scanned else [])))
 
 
@@ -393,10 +353,8 @@ def say_condition(results: Results) -> str:
     dispersion = results.provenance.uncertainty.motion
     motion = _("if exactly this motion recurs")
     if dispersion:
-        motion = _(
-            "for an earthquake like this one (dispersion {dispersion}, {source})",
-            dispersion=number(dispersion, ".3g"), source=say_source(results),
-        )  # fmt: skip
+        motion = _("for an earthquake like this one (dispersion {dispersion}, {source})",
+                   dispersion=number(dispersion, ".3g"), source=say_source(results))  # fmt: skip
     elif _has_drawn(results):
         motion = _("for earthquakes with the given peaks")
     if not results.provenance.uncertainty.piece:
@@ -439,10 +397,9 @@ def say_sensitivity(results: Results, rows: Sequence[ItemResult]) -> str:
     origin = results.provenance
     if results.settings.ideal:
         changes = [(one, found.ideal.probability, found.probability) for one, found in simulated if found.ideal]
-        return _(
-            "In an earthquake like this one (dispersion {dispersion}), {changes}.",
-            dispersion=number(origin.uncertainty.motion, ".3g"), changes=_say_changes(changes),
-        ) if simulated else ""  # fmt: skip
+        return _("In an earthquake like this one (dispersion {dispersion}), {changes}.",
+                 dispersion=number(origin.uncertainty.motion, ".3g"),
+                 changes=_say_changes(changes)) if simulated else ""  # fmt: skip
     simulated = [(one, found) for one, found in simulated if found.tried]  # what is drawn scatters by itself
     least = origin.shaking.scatter if origin.shaking else origin.site_ground.dispersion if origin.site_ground else 0.0
     return " ".join(
@@ -493,33 +450,27 @@ def say_draws(results: Results) -> str:
     if draws is None:
         return ""
     if draws.scenarios:
-        texts.append(ngettext(
-            "A share of {share} of the variance of ε is that of {n:,} scenario of the ground; the rest is drawn.",
-            "A share of {share} of the variance of ε is that of {n:,} scenarios of the ground, draw by draw in their "
-            "order; the rest is drawn.",
-            draws.scenarios, share=number(draws.scenario_share, ".2f"),
-        ))  # fmt: skip
+        texts.append(ngettext("A share of {share} of the variance of ε is that of {n:,} scenario of the ground; the "
+                              "rest is drawn.",
+                              "A share of {share} of the variance of ε is that of {n:,} scenarios of the ground, draw "
+                              "by draw in their order; the rest is drawn.", draws.scenarios,
+                              share=number(draws.scenario_share, ".2f")))  # fmt: skip
     if not draws.is_city:
         return " ".join(texts)
     if draws.is_placed:
         source = _("as the ShakeMap gives it") if draws.is_shared_given else _("Boore et al. 2014")
-        texts.append(_(
-            "The draws are those of a city: what is drawn, of ln {measure}, has a part that is common to all places, a "
-            "share of {shared} of its variance ({source}), and one that is correlated with that of a place at a "
-            "distance h by exp(-3h/{range} km) (Jayaram and Baker 2009).",
-            measure=draws.measure, shared=number(draws.shared, ".3f"), source=source,
-            range=number(draws.range_km, "g"),
-        ))  # fmt: skip
+        texts.append(_("The draws are those of a city: what is drawn, of ln {measure}, has a part that is common to "
+                       "all places, a share of {shared} of its variance ({source}), and one that is correlated with "
+                       "that of a place at a distance h by exp(-3h/{range} km) (Jayaram and Baker 2009).",
+                       measure=draws.measure, shared=number(draws.shared, ".3f"), source=source,
+                       range=number(draws.range_km, "g")))  # fmt: skip
     else:
-        texts.append(_(
-            "The draws are those of a city, but the building's Latitude and Longitude are not filled in: ε is the "
-            "number that all places have in common, so that buildings without a place are fully correlated."
-        ))  # fmt: skip
+        texts.append(_("The draws are those of a city, but the building's Latitude and Longitude are not filled in: ε "
+                       "is the number that all places have in common, so that buildings without a place are fully "
+                       "correlated."))  # fmt: skip
     if results.provenance.suite is None:
-        texts.append(_(
-            "Motion k has the same random phases in every building, so that sums over buildings vary more than they "
-            "should, not less."
-        ))  # fmt: skip
+        texts.append(_("Motion k has the same random phases in every building, so that sums over buildings vary more "
+                       "than they should, not less."))  # fmt: skip
     return " ".join(texts)
 
 

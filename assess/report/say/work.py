@@ -229,18 +229,15 @@ def say_cost(cost: float | None) -> str:
 # ---------------------------------------------------------------- sentences
 
 SCREENING = fill("screening, not design")
-CHECKS = fill(
-    "Forces are for screening, not design: a structural engineer checks wall, fixings and the body of each piece."
-)
-ORDER = fill(
-    "The numbers give the order of urgency: class (upper estimate), then life safety and routes, then expected falls."
-)
+CHECKS = fill("Forces are for screening, not design: a structural engineer checks wall, fixings and the body of each "
+              "piece.")  # fmt: skip
+ORDER = fill("The numbers give the order of urgency: class (upper estimate), then life safety and routes, then "
+             "expected falls.")  # fmt: skip
 HOLDS = fill("its own weight holds it at 84 % of PFA; fixings against sliding or for the rest")
 """What a tension of 0 at 84 % of PFA means."""
-DISAGREEMENT = fill(
-    "Sources disagree on rigid brackets: the Tokyo Fire Department holds L-brackets that are screwed to the wall "
-    "to be the most effective device; the Earthquake Country Alliance advises flexible straps to two studs instead."
-)
+DISAGREEMENT = fill("Sources disagree on rigid brackets: the Tokyo Fire Department holds L-brackets that are screwed "
+                    "to the wall to be the most effective device; the Earthquake Country Alliance advises flexible "
+                    "straps to two studs instead.")  # fmt: skip
 
 
 def say_effect_of_all(schedule: Schedule) -> list[str]:
@@ -250,14 +247,12 @@ def say_effect_of_all(schedule: Schedule) -> list[str]:
     before, after = (
         words.say_falls(one.falls, one.falls_low, one.falls_high) for one in (schedule.before, schedule.after)
     )
-    effect = ngettext(
-        "Fixing the {n:,} entry below ({pieces}) lowers the expected falls from {before} to {after}, if all anchors "
-        "hold.",
-        "Fixing the {n:,} entries below ({pieces}) lowers the expected falls from {before} to {after}, if all anchors "
-        "hold.",
-        len(schedule.rows), pieces=words.plural(sum(one.pieces for one in schedule.rows), "piece"), before=before,
-        after=after,
-    )  # fmt: skip
+    effect = ngettext("Fixing the {n:,} entry below ({pieces}) lowers the expected falls from {before} to {after}, if "
+                      "all anchors hold.",
+                      "Fixing the {n:,} entries below ({pieces}) lowers the expected falls from {before} to {after}, "
+                      "if all anchors hold.", len(schedule.rows),
+                      pieces=words.plural(sum(one.pieces for one in schedule.rows), "piece"), before=before,
+                      after=after)  # fmt: skip
     if schedule.cost is None:
         costs = _("No cost is given: unit costs are read from the sheet {sheet} of the workbook.", sheet=_("Costs"))
         return [effect, costs]
@@ -291,11 +286,9 @@ def list_marks(schedule: Schedule) -> list[str]:
         HEIGHT: ngettext("bracket height assumed, 0.9 of the piece's height, for {some:,} of {n:,} piece",
                          "bracket height assumed, 0.9 of the piece's height, for {some:,} of {n:,} pieces",
                          total, some=heights) if heights else "",
-        METRE: ngettext(
-            "forces and fixings of one metre of the width, which is not known, for {some:,} of {n:,} piece",
-            "forces and fixings of one metre of the width, which is not known, for {some:,} of {n:,} pieces",
-            total, some=metres,
-        ) if metres else "",
+        METRE: ngettext("forces and fixings of one metre of the width, which is not known, for {some:,} of {n:,} piece",
+                        "forces and fixings of one metre of the width, which is not known, for {some:,} of {n:,} "
+                        "pieces", total, some=metres) if metres else "",
     }  # fmt: skip
     if any(one.is_least for one in works):
         texts[f"{LEAST_FIXINGS}{LEAST}"] = _("at least {n}, as no capacity is printed", n=LEAST_FIXINGS)

@@ -49,11 +49,9 @@ def _build_floor(view: View, page: FloorPage, at: int) -> blocks.Box:
     ]
     if plan:
         if plan.pieces:
-            texts = [_(
-                "Plan: every piece with a position, to scale, with the symbol of its class; hatched: the floor that a "
-                "piece of medium class or above would cover if it fell: to either side, or away from its wall where "
-                "that is known."
-            ), view.marks]  # fmt: skip
+            texts = [_("Plan: every piece with a position, to scale, with the symbol of its class; hatched: the floor "
+                       "that a piece of medium class or above would cover if it fell: to either side, or away from its "
+                       "wall where that is known."), view.marks]  # fmt: skip
             if left := sum(one.item.x_m is None or one.item.y_m is None for one in page.results):
                 texts.append(ngettext("{n:,} row without a position is left out.",
                                       "{n:,} rows without a position are left out.", left))  # fmt: skip
@@ -123,13 +121,10 @@ def _list_pieces(view: View, page: FloorPage, risky: Sequence[ItemResult], most:
         found.append(blocks.Paragraph(_("No simulated free-standing piece on this floor reaches high.")))
     elif not risky and (counts.free or (page.results and not counts.has_apart)):
         found.append(blocks.Paragraph(_("No free-standing piece on this floor reaches high.")))
-    text = ngettext(
-        "{n:,} row is unconfirmed, as nothing is known of the building, or as the motions are too weak to confirm its "
-        "lower class.",
-        "{n:,} rows are unconfirmed, as nothing is known of the building, or as the motions are too weak to confirm "
-        "their lower class.",
-        len(unconfirmed),
-    )
+    text = ngettext("{n:,} row is unconfirmed, as nothing is known of the building, or as the motions are too weak to "
+                    "confirm its lower class.",
+                    "{n:,} rows are unconfirmed, as nothing is known of the building, or as the motions are too weak "
+                    "to confirm their lower class.", len(unconfirmed))  # fmt: skip
     list_some(unconfirmed, f"{words.UNCONFIRMED} {text}", "formula", "class")
     text = ngettext("{n:,} row that was not simulated is high or very high by formula.",
                     "{n:,} rows that were not simulated are high or very high by formula.", len(left))  # fmt: skip

@@ -71,10 +71,8 @@ def build_methods(view: View) -> blocks.Section:
         listed.append(
             blocks.Box(_list_worked(view, view.results[view.run.worked_item]), "method", "article", "example")
         )
-    text = _(
-        "Ground PGA times a code's amplification with height is used on floors without any other motion, or on every "
-        "floor where the scenario names a code."
-    )
+    text = _("Ground PGA times a code's amplification with height is used on floors without any other motion, or on "
+             "every floor where the scenario names a code.")  # fmt: skip
     heads = blocks.list_columns(
         (_("Code"), "w9"), (_("Clause"), "w18"), (_("Equation"), ""), (_("Status"), "w36")
     )  # fmt: skip
@@ -93,12 +91,10 @@ def build_methods(view: View) -> blocks.Section:
 def _list_worked(view: View, example: ItemResult) -> list[blocks.Block]:
     found: list[blocks.Block] = [
         blocks.Heading(_("Worked example: {item}", item=words.cut(example.item.item, 40))),
-        blocks.Paragraph(_(
-            "{what}, floor {floor}: {size} cm, {axis}, under its governing motion. All other numbers are computed in "
-            "the same way.",
-            what=describe(example, 60), floor=words.cut(example.item.floor, 20), size=words.size(example),
-            axis=_("along {axis}", axis=example.governing.motion.axis),
-        )),
+        blocks.Paragraph(_("{what}, floor {floor}: {size} cm, {axis}, under its governing motion. All other numbers "
+                           "are computed in the same way.", what=describe(example, 60),
+                           floor=words.cut(example.item.floor, 20), size=words.size(example),
+                           axis=_("along {axis}", axis=example.governing.motion.axis))),
     ]  # fmt: skip
     for one in view.run.worked:
         method = next(each for each in view.run.methods if each.key == one.key)
@@ -127,20 +123,17 @@ def build_approach(view: View) -> blocks.Section:
     limits = _("Classes by the chance of overturning: {classes}.", classes=classes)
     parts = [(_("Chance and class"), (verified.adopted, verified.sentence, limits))]
     if verified.done:
-        interval = _(
-            "A range is the 95 % sampling interval of Wilson (1927). It covers the number of draws only, not what is "
-            "unknown about the earthquake or the furniture. On assumed motion it is the chance in the slower and in "
-            "the faster third of the drawn motions: what is not known of the ground and of the building."
-        )
+        interval = _("A range is the 95 % sampling interval of Wilson (1927). It covers the number of draws only, not "
+                     "what is unknown about the earthquake or the furniture. On assumed motion it is the chance in the "
+                     "slower and in the faster third of the drawn motions: what is not known of the ground and of the "
+                     "building.")  # fmt: skip
         sensitivity = say_sensitivity(run, view.results)
         parts.append((_("What was assumed uncertain"), (say_assumed(run), sensitivity, interval)))
     if run.has_routes:
-        evaluated = _(
-            "A route is evaluated by the chance that fallen pieces leave less than the required clear width on one of "
-            "its segments; pieces that fall in the same draw count together. The limit on that chance is {risk}. No "
-            "published rule exists; the rule used here is described in the annex.",
-            risk=say_risk(run.route_tables.risk),
-        )
+        evaluated = _("A route is evaluated by the chance that fallen pieces leave less than the required clear width "
+                      "on one of its segments; pieces that fall in the same draw count together. The limit on that "
+                      "chance is {risk}. No published rule exists; the rule used here is described in the annex.",
+                      risk=say_risk(run.route_tables.risk))  # fmt: skip
         parts.append((_("Evacuation routes"), (evaluated, "", "")))
     for heading, texts in parts:
         found += [blocks.Heading(heading), *(blocks.Paragraph(text) for text in texts if text)]
@@ -258,10 +251,9 @@ def list_facts(view: View) -> blocks.Table:
             shown = ground.say_peak(run, column.name, shown) if column.name in ground.PEAKS else shown
             shown = words.clip(_(shown) if column.kind in ("choice", "flag") else shown)
             lines.append((_(column.label), words.cut(shown, 150) if is_client else shown))
-    pieces = _(
-        "{pieces} in {rows} on {floors}", pieces=words.plural(content.total.total, "piece"),
-        rows=words.plural(len(view.results), "row"), floors=words.plural(len(content.floors), "floor"),
-    )  # fmt: skip
+    pieces = _("{pieces} in {rows} on {floors}", pieces=words.plural(content.total.total, "piece"),
+               rows=words.plural(len(view.results), "row"),
+               floors=words.plural(len(content.floors), "floor"))  # fmt: skip
     status, why = content.verified.status
     facts: list[tuple[str, blocks.Words]] = [
         *lines, (_("Date"), content.date), (_("Pieces"), pieces),
@@ -280,10 +272,8 @@ def list_signing(view: View) -> list[blocks.Block]:
         (_("Prepared by"), building.prepared_by), (_("Checked by"), building.checked_by),
         (_("Approved by"), building.approved_by),
     )  # fmt: skip
-    made = _(
-        "Made with assess {version} from {workbook}; versions and hashes are in the data-quality log.",
-        version=origin.version, workbook=words.cut(origin.workbook, 80),
-    )  # fmt: skip
+    made = _("Made with assess {version} from {workbook}; versions and hashes are in the data-quality log.",
+             version=origin.version, workbook=words.cut(origin.workbook, 80))  # fmt: skip
     room = ("", "") if view.for_print else ()
     rows = [(blocks.head(role), words.cut(name, 60), *room) for role, name in names]
     return [blocks.table(blocks.list_columns(*heads), rows, "signing"), blocks.Paragraph(made, "small")]

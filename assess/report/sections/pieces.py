@@ -169,12 +169,10 @@ def build_comparison(view: View) -> blocks.Section:
         see = (_("See the appendix, and the sheet Items of the Excel report.") if view.is_compact
                else _("See the sheet Items of the Excel report."))  # fmt: skip
         return blocks.Section([*found, blocks.Paragraph(see)])
-    text = _(
-        "Under the governing motion of the row: that of the highest adopted class, then of the largest adopted chance. "
-        "A larger value under another motion of the row (its other axis, or a parallel record) follows an arrow. "
-        "Criteria are met or not met and have no class. A dash: not evaluated, for the reason in the marks of the "
-        "method, or not simulated."
-    )
+    text = _("Under the governing motion of the row: that of the highest adopted class, then of the largest adopted "
+             "chance. A larger value under another motion of the row (its other axis, or a parallel record) follows an "
+             "arrow. Criteria are met or not met and have no class. A dash: not evaluated, for the reason in the marks "
+             "of the method, or not simulated.")  # fmt: skip
     table = build_table(view.columns("methods"), view.content.listed, "items methods")
     return blocks.Section([*found, blocks.Paragraph(text), table], "wide")
 

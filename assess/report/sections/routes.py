@@ -54,10 +54,8 @@ def build_page(view: View) -> blocks.Section:
     ]
     legend = blocks.join_words([*states, _("The chances assume that all anchors hold.")])
     rooms = _list_room_lines(view)
-    text = _(
-        "By the best way out, stairs included. The chance is that of losing every exit. Anchor or move all pieces of a "
-        "line."
-    )
+    text = _("By the best way out, stairs included. The chance is that of losing every exit. Anchor or move all pieces "
+             "of a line.")  # fmt: skip
     return blocks.Section([
         blocks.Paragraph(" ".join(route.describe_routes(found)), "lead"),
         *([blocks.Paragraph(uncounted)] if uncounted else []),
@@ -263,16 +261,14 @@ def _list_steps(view: View) -> list[blocks.Block]:
     listed: list[blocks.Block] = [blocks.Heading(_("What to fix for each route"))]
     steps = [(one, at, step) for one in found.routes for at, step in enumerate(one.fixes, start=1)]
     if steps:
-        lead = blocks.rich(_(
-            "The smallest set of rows found that opens each route: its whole range is below {risk} <em>if the anchors "
-            "hold</em>. Anchor all pieces of a row, or move them away. Fix all listed rows; fixing only some may have "
-            "no effect, as pieces that fall together must all be fixed."
-        ), risk=route.say_risk(found.risk))  # fmt: skip
+        lead = blocks.rich(_("The smallest set of rows found that opens each route: its whole range is below {risk} "
+                             "<em>if the anchors hold</em>. Anchor all pieces of a row, or move them away. Fix all "
+                             "listed rows; fixing only some may have no effect, as pieces that fall together must all "
+                             "be fixed."), risk=route.say_risk(found.risk))  # fmt: skip
         bound = then = ""
         if any(one.fixes and one.blocked_if_unconfirmed_fall for one in found.routes):
-            bound = _(
-                "Pieces whose class is not confirmed count as fallen in these chances, which is on the safe side."
-            )
+            bound = _("Pieces whose class is not confirmed count as fallen in these chances, which is on the safe "
+                      "side.")  # fmt: skip
         if any(one.missing_after for one in found.routes):
             then = _("A route that is not known then says what to fill in.")
         heads = blocks.list_columns(
@@ -308,10 +304,9 @@ def _list_rooms(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block]
     chosen = route.choose_rows(found.rooms, MOST_ROOMS, lambda one: one.loses_every_exit.probability)
     if not chosen:
         return [heading, blocks.Paragraph(_("No room has a way out in the workbook, so none is evaluated."))]
-    caption = _(
-        "Chance that a room loses all exits; where it has no exit, all stairs, beyond which nothing is known. The "
-        "first way out is the safest; others share as few segments with it as possible, and name those that they share."
-    )
+    caption = _("Chance that a room loses all exits; where it has no exit, all stairs, beyond which nothing is known. "
+                "The first way out is the safest; others share as few segments with it as possible, and name those "
+                "that they share.")  # fmt: skip
 
     def list_ways(one: RoomRow) -> blocks.Words:
         lines: blocks.Runs = [f"{at}. {route.say_way(way, found)}" for at, way in enumerate(one.ways, start=1)]
@@ -336,10 +331,8 @@ def _list_rooms(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block]
 
 def _list_segments(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block]:
     found = view.run.route_tables
-    caption = _(
-        "Widths in m. Width now: with nothing fallen; all fallen: what is left with every free-standing piece fallen. "
-        "Bounds: independent / fully correlated."
-    )
+    caption = _("Widths in m. Width now: with nothing fallen; all fallen: what is left with every free-standing piece "
+                "fallen. Bounds: independent / fully correlated.")  # fmt: skip
 
     def say_bounds(one: SegmentRow) -> str:
         is_known = one.evaluated and one.state != RouteState.NOT_KNOWN
@@ -396,12 +389,10 @@ def _list_beside(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block
     beside = [(one, near) for one in named for near in (one.pieces or (None,))]
     found: list[blocks.Block] = [blocks.Heading(_("The pieces that matter"))]
     if beside:
-        caption = _(
-            "The segments most likely to be blocked come first. Distance to the edge of the route, how far the piece "
-            "lies in it once fallen, and the width that it alone leaves, in m. Falls and blocked: chance that it falls "
-            "and the segment is blocked, of a row that at least one of its pieces does; for an anchored one, if "
-            "anchors fail."
-        )
+        caption = _("The segments most likely to be blocked come first. Distance to the edge of the route, how far the "
+                    "piece lies in it once fallen, and the width that it alone leaves, in m. Falls and blocked: chance "
+                    "that it falls and the segment is blocked, of a row that at least one of its pieces does; for an "
+                    "anchored one, if anchors fail.")  # fmt: skip
         heads = [
             blocks.Column(_("Segment"), "segment"), blocks.Column(_("Floor"), "floor"),
             *(blocks.Column(one.heading, one.column.width, one.is_number) for one in columns),

@@ -67,10 +67,8 @@ def _list_work(view: View) -> Iterator[blocks.Block]:
     schedule, shown = view.run.schedule, view.content.fixes[:MOST]
     works = say.list_work(shown, list(view.floor_titles))
     has_code, has_cost = any(one.row.tension_code_kn is not None for one in works), schedule.cost is not None
-    forces = _(
-        "Forces are those of each piece: the tension that its fixings carry together, at the bracket or, for a base "
-        "angle, at the base, and the shear at its base at PFA."
-    )
+    forces = _("Forces are those of each piece: the tension that its fixings carry together, at the bracket or, for a "
+               "base angle, at the base, and the shear at its base at PFA.")  # fmt: skip
     code = blocks.lower_indices(_("By code: F_p of ASCE 7-22.")) if has_code else ""
     yield blocks.Paragraph(blocks.join_words((f"{_(say.ORDER)} {forces}", code)), "lead-in")
     fields = schedule_fields(WorkRow)

@@ -119,10 +119,8 @@ def _list_fixes(view: View, *, is_tight: bool) -> list[blocks.Block]:
          f"{number(100 * (one.together or 0.0), '.0f')} %")
         for one in fixes[:FIXES]
     ]  # fmt: skip
-    text = blocks.rich(_(
-        "Falls avoided <em>if the anchors hold</em>; together: share of all expected falls, with the rows above. "
-        "Sorted by class (upper estimate), then life safety and routes."
-    ))  # fmt: skip
+    text = blocks.rich(_("Falls avoided <em>if the anchors hold</em>; together: share of all expected falls, with the "
+                         "rows above. Sorted by class (upper estimate), then life safety and routes."))  # fmt: skip
     n = len(view.content.fixes)
     all_ = ngettext("What to fix has the {n:,} entry.", "What to fix has all {n:,} entries.", n)
     see = [blocks.Span(all_, href="#schedule")] if n > min(len(fixes), FIXES) else ""
@@ -182,11 +180,9 @@ def say_plainly(
         texts.append(f"{expected}.")
     first = [one for one in fixes[:FIXES] if one.together is not None]
     if total.expected >= 0.05 and first:
-        texts.append(ngettext(
-            "Fixing the first entry of the list below avoids {share:.0f} % of the expected falls.",
-            "Fixing the first {n} entries of the list below avoids {share:.0f} % of the expected falls.",
-            len(first), share=100 * (first[-1].together or 0.0),
-        ))  # fmt: skip
+        texts.append(ngettext("Fixing the first entry of the list below avoids {share:.0f} % of the expected falls.",
+                              "Fixing the first {n} entries of the list below avoids {share:.0f} % of the expected "
+                              "falls.", len(first), share=100 * (first[-1].together or 0.0)))  # fmt: skip
     return texts
 
 
@@ -197,41 +193,31 @@ def _say_counts(total: Counts) -> str:
     values = {"risky": words.say_span(total.risky_span), "very_high": words.say_span(total.span(RiskClass.VERY_HIGH))}
     if total.has_apart:
         if not total.risky_span[1]:
-            return ngettext(
-                "The {n:,} simulated free-standing piece has no high or very high chance of overturning in this "
-                "scenario.",
-                "None of {n:,} simulated free-standing pieces has a high or very high chance of overturning in this "
-                "scenario.",
-                total.free,
-            )
+            return ngettext("The {n:,} simulated free-standing piece has no high or very high chance of overturning in "
+                            "this scenario.",
+                            "None of {n:,} simulated free-standing pieces has a high or very high chance of "
+                            "overturning in this scenario.", total.free)  # fmt: skip
         if total.free == 1 and total.risky_span[0]:
             return _("The one simulated free-standing piece has a high or very high chance of overturning.")
-        return ngettext(
-            "The {n:,} simulated free-standing piece may have a high or very high chance of overturning: the limit "
-            "lies within the interval of its chance.",
-            "Of {n:,} simulated free-standing pieces, {risky} have a high or very high chance of overturning, "
-            "{very_high} a very high one.",
-            total.free, **values,
-        )  # fmt: skip
+        return ngettext("The {n:,} simulated free-standing piece may have a high or very high chance of overturning: "
+                        "the limit lies within the interval of its chance.",
+                        "Of {n:,} simulated free-standing pieces, {risky} have a high or very high chance of "
+                        "overturning, {very_high} a very high one.", total.free, **values)  # fmt: skip
     if not total.risky_span[1]:
-        return ngettext(
-            "The {n:,} free-standing piece has no high or very high chance of overturning in this scenario.",
-            "None of {n:,} free-standing pieces has a high or very high chance of overturning in this scenario.",
-            total.free,
-        )
+        return ngettext("The {n:,} free-standing piece has no high or very high chance of overturning in this "
+                        "scenario.",
+                        "None of {n:,} free-standing pieces has a high or very high chance of overturning in this "
+                        "scenario.", total.free)  # fmt: skip
     if total.free == 1 and total.risky_span[0]:
         return (
             _("The one free-standing piece has a very high chance of overturning in this scenario.")
             if total.by_class[RiskClass.VERY_HIGH]
             else _("The one free-standing piece has a high chance of overturning in this scenario.")
         )
-    return ngettext(
-        "The {n:,} free-standing piece may have a high or very high chance of overturning: the limit lies within the "
-        "interval of its chance.",
-        "Of {n:,} free-standing pieces, {risky} have a high or very high chance of overturning, {very_high} a very "
-        "high one.",
-        total.free, **values,
-    )  # fmt: skip
+    return ngettext("The {n:,} free-standing piece may have a high or very high chance of overturning: the limit lies "
+                    "within the interval of its chance.",
+                    "Of {n:,} free-standing pieces, {risky} have a high or very high chance of overturning, "
+                    "{very_high} a very high one.", total.free, **values)  # fmt: skip
 
 
 PARTS = (Part(key="summary", heading=fill("Summary"), places={"client": 10, "all": 10}, build=build),)

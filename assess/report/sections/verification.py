@@ -30,10 +30,9 @@ def build(view: View) -> blocks.Section:
     """Return the status, the motions of each floor with their fit, figures, and what simulation changed."""
     verified = view.content.verified
     if not verified.done:
-        text = blocks.rich(_(
-            "<strong>Not simulated.</strong> The risks in this report come from published formulas. No rocking has "
-            "been simulated, so no class has been confirmed, raised or lowered, and no interval is given."
-        ))  # fmt: skip
+        text = blocks.rich(_("<strong>Not simulated.</strong> The risks in this report come from published formulas. "
+                             "No rocking has been simulated, so no class has been confirmed, raised or lowered, and no "
+                             "interval is given."))  # fmt: skip
         return blocks.Section([blocks.Paragraph(text)], "run-on")
     status, why = verified.status
     return blocks.Section([
@@ -83,11 +82,9 @@ def _list_motions(view: View) -> list[blocks.Block]:
         (_("Spectral misfit (mean; most)"), "w15", "num"), (_("PFA, ratio"), "w11", "num"),
         (_("PFV, ratio"), "w11", "num"),
     )  # fmt: skip
-    misfit = _(
-        "Spectral misfit: mean deviation of the motions' mean 5 % spectrum from its target, over its periods; then the "
-        "largest, and its period. Ratios: mean peak of the motions over the floor's, ± the scatter from motion to "
-        "motion."
-    )
+    misfit = _("Spectral misfit: mean deviation of the motions' mean 5 % spectrum from its target, over its periods; "
+               "then the largest, and its period. Ratios: mean peak of the motions over the floor's, ± the scatter "
+               "from motion to motion.")  # fmt: skip
     left = len(misfits) - MISFITS
     more = ngettext("{n:,} more floor motion with a large misfit is in the table.",
                     "{n:,} more floor motions with a large misfit are in the table.", left)  # fmt: skip
@@ -170,10 +167,8 @@ def _list_changes(view: View) -> list[blocks.Block]:
 def build_contours(view: View) -> blocks.Section:
     """Return the figure; nothing where the pieces have none."""
     drawn = view.once("contours", lambda: draw_contours(view.run, view.progress))
-    text = _(
-        "The chance of overturning by the formulas for pieces of one height, over Breadth and PFA, with the pieces of "
-        "this building."
-    )
+    text = _("The chance of overturning by the formulas for pieces of one height, over Breadth and PFA, with the "
+             "pieces of this building.")  # fmt: skip
     return blocks.Section([blocks.Paragraph(text), drawn], "" if view.content.verified.done else "run-on")
 
 
@@ -184,10 +179,8 @@ def build_annual(view: View) -> blocks.Section:
         return blocks.Section([])
     listed: list[blocks.Block] = []
     if run.is_evaluated:
-        text = _(
-            "These chances count all earthquakes of the site, weak and strong. All other chances in this report are "
-            "those in the scenario."
-        )
+        text = _("These chances count all earthquakes of the site, weak and strong. All other chances in this report "
+                 "are those in the scenario.")  # fmt: skip
         listed.append(blocks.Paragraph(text, "caution"))
     listed += [blocks.Paragraph(text, "" if at else "lead") for at, text in enumerate(found.paragraphs)]
     for one in run.remarks:

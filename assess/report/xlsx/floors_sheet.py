@@ -75,14 +75,12 @@ def write_floors(pen: Pen, page: Any, content: Content) -> None:
     )  # fmt: skip
     labels = [f"{label} [{unit}]" if unit else label for label, unit in heads]
     pen.heads(page, labels, [_WIDTHS.get(key.split("_")[0], 20) for key in FLOOR_KEYS])
-    edit_here = _(
-        "Edit the PFA and PFV here: rows that were not simulated follow; simulated rows on the floor say 'run again' "
-        "and leave all counts. Where several records serve a floor, the one with the largest {peak} stands in its "
-        "line; the others follow below the last floor. Simulated rows show the record that governed the run, other "
-        "rows go by the largest {peak}. Interpolated floors and those of a code's profile hold numbers as run: they "
-        "do not follow when another floor is edited.",
-        peak=ruling.upper(),
-    )  # written now: what is above the row being written is left out
+    edit_here = _("Edit the PFA and PFV here: rows that were not simulated follow; simulated rows on the floor say "
+                  "'run again' and leave all counts. Where several records serve a floor, the one with the largest "
+                  "{peak} stands in its line; the others follow below the last floor. Simulated rows show the record "
+                  "that governed the run, other rows go by the largest {peak}. Interpolated floors and those of a "
+                  "code's profile hold numbers as run: they do not follow when another floor is edited.",
+                  peak=ruling.upper())  # written now: what is above the row being written is left out  # fmt: skip
     page.write_comment(0, FLOOR_AT["pfa_X"], edit_here, {"x_scale": 2, "y_scale": 1.5})
     for row, line in enumerate(lines, HEAD):
         texts = (line.floor.name, *map(_say_source, line.motions.values()))

@@ -407,32 +407,24 @@ def _dress(pen: Pen, page: Any, columns: Sequence[Column], live: Collection[str]
 
 def _list_comments() -> dict[str, str]:
     return {
-        "breadth_cm": _(
-            "Edit the coloured cells. Quantity and Anchored change the counts at once. A row that was not simulated "
-            "follows by the formula. A row that was simulated says 'run again' once its size, centre of gravity, "
-            "friction, axis, floor or the floor's motion is edited: it then leaves all counts, lists and charts. So "
-            "does a row held by a bracket of known capacity, and also once its bracket or weight is edited."
-        ),
-        "class_formula": _(
-            "By the limits in Assumptions. * behind a class: outside the range in which the formula was checked. "
-            "⚓ before it: anchored, so its risk depends on its anchor; the class is that of the piece without "
-            "it."
-        ),
-        "basis": _(
-            "What the class rests on. simulated: the chance found by simulation. formula (not simulated): the "
-            "published formula, as nothing was simulated. unconfirmed: nothing is known of the building; or the "
-            "formula, as simulation gave a lower class under motions that are too weak. The three are never added up. "
-            "cannot rock: low; counted with the run."
-        ),
-        "beside": _(
-            "For comparison. In an earthquake like this one: motion and piece differ from draw to draw. If exactly "
-            "this motion recurred: the piece exactly as given, under motions with the spectrum of this one."
-        ),
-        "class": _(
-            "The class in force, by the limits in Assumptions; at least high where the piece overturns under the "
-            "record itself. Columns to the right of the notes are not printed."),
-        "low": _(
-            "The sampling interval; on assumed motion the chances in the slower and the faster third of the draws."
-        ),
+        "breadth_cm": _("Edit the coloured cells. Quantity and Anchored change the counts at once. A row that was not "
+                        "simulated follows by the formula. A row that was simulated says 'run again' once its size, "
+                        "centre of gravity, friction, axis, floor or the floor's motion is edited: it then leaves all "
+                        "counts, lists and charts. So does a row held by a bracket of known capacity, and also once "
+                        "its bracket or weight is edited."),
+        "class_formula": _("By the limits in Assumptions. * behind a class: outside the range in which the formula was "
+                           "checked. ⚓ before it: anchored, so its risk depends on its anchor; the class is that of "
+                           "the piece without it."),
+        "basis": _("What the class rests on. simulated: the chance found by simulation. formula (not simulated): the "
+                   "published formula, as nothing was simulated. unconfirmed: nothing is known of the building; or the "
+                   "formula, as simulation gave a lower class under motions that are too weak. The three are never "
+                   "added up. cannot rock: low; counted with the run."),
+        "beside": _("For comparison. In an earthquake like this one: motion and piece differ from draw to draw. If "
+                    "exactly this motion recurred: the piece exactly as given, under motions with the spectrum of this "
+                    "one."),
+        "class": _("The class in force, by the limits in Assumptions; at least high where the piece overturns under "
+                   "the record itself. Columns to the right of the notes are not printed."),
+        "low": _("The sampling interval; on assumed motion the chances in the slower and the faster third of the "
+                 "draws."),
         "class_upper": _("By the upper end of the range, and at least that of the chance to compare with."),
     }  # fmt: skip
