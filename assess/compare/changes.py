@@ -34,7 +34,7 @@ class Direction(StrEnum):
     """Where a row goes from BEFORE to AFTER; the order is that of lists.
 
     Worse and better are to another class or state, or from and to anchored; it rises and falls within one. It is
-    unclear where chances rest on different bases, or a state is not known; added and removed are rows of one run alone.
+    unclear where chances rest on different bases, or a state is not known.
     """
 
     WORSE = "worse"
@@ -147,11 +147,7 @@ class Comparison:
 
     @cached_property
     def moves(self) -> Mapping[tuple[str, str], int]:
-        """Pieces by their standing before and after; `ABSENT` stands for those that a run lacks.
-
-        Where a row has more pieces in one run, those beyond are of that run alone: rows and columns add up to the
-        counts of the runs.
-        """
+        """Pieces by their standing before and after; where a row has more in one run, those beyond are of it alone."""
         found: Counter[tuple[str, str]] = Counter()
         for one in self.pieces:
             (was, now), (before, after), both = one.states, one.quantities, min(one.quantities)

@@ -81,23 +81,7 @@ _PIECES: Mapping[Direction, Text] = {
                              "{n:,} pieces cannot be compared, as their chances rest on different bases: {names}.",
                              0, names=""),
 }  # fmt: skip
-"""What a number of pieces, with their names, is said to do; likewise routes and rooms, worse and unclear."""
-_ROUTES = (
-    nfill("{n:,} route gets worse: {names}.", "{n:,} routes get worse: {names}.", 0, names=""),
-    nfill("{n:,} route cannot be compared: {names}.", "{n:,} routes cannot be compared: {names}.", 0, names=""),
-)
-_ROOMS = (
-    nfill("The best way from {n:,} room to the street gets worse: {names}.",
-          "The best ways from {n:,} rooms to the street get worse: {names}.", 0, names=""),
-    nfill("{n:,} room cannot be compared: {names}.", "{n:,} rooms cannot be compared: {names}.", 0, names=""),
-)  # fmt: skip
-_UNJOINED = nfill("In {run}, {n:,} room is joined to no exit or stair, so that its way out is not known: {names}.",
-                  "In {run}, {n:,} rooms are joined to no exit or stair, so that their way out is not known: {names}.",
-                  0, run="", names="")  # fmt: skip
-_UNJOINED_IN_BOTH = nfill("In both runs, {n:,} room is joined to no exit or stair, so that its way out is not known: "
-                          "{names}.",
-                          "In both runs, {n:,} rooms are joined to no exit or stair, so that their way out is not "
-                          "known: {names}.", 0, names="")  # fmt: skip
+"""What a number of pieces, with their names, is said to do."""
 
 
 def name_direction(direction: Direction) -> str:
@@ -264,8 +248,6 @@ class View:
                     "the limit of its own run.", before=words.percent(self.before.route_risk),
                     after=words.percent(self.after.route_risk))  # fmt: skip
 
-    # ------------------------------------------------------------ what gets worse
-
     @property
     def tone(self) -> str:
         """What the first lines are: "worse", "unclear", "better" or "same"."""
@@ -307,27 +289,38 @@ class View:
 
     def list_worse(self) -> list[str]:
         """Return what gets worse, a sentence each."""
-        texts = [
-            *map(self._name_pieces, WORSE),
-            _name_states(self.found.routes, WORSE, _ROUTES[0]),
-            _name_states(self.found.rooms, WORSE, _ROOMS[0]),
-        ]
-        return [text for text in texts if text]
+        routes = nfill("{n:,} route gets worse: {names}.", "{n:,} routes get worse: {names}.", 0, names="")
+        rooms = nfill("The best way from {n:,} room to the street gets worse: {names}.",
+                      "The best ways from {n:,} rooms to the street get worse: {names}.", 0, names="")  # fmt: skip
+        ways = (_name_states(self.found.routes, WORSE, routes), _name_states(self.found.rooms, WORSE, rooms))
+        return [text for text in (*map(self._name_pieces, WORSE), *ways) if text]
 
     def list_others(self) -> list[str]:
         """Return what else is to be known at once: what is in one run alone, cannot be compared, or is not joined."""
         texts = [*map(self._name_pieces, ONE_SIDED)]
         if self.found.has_same_basis:
+            routes = nfill("{n:,} route cannot be compared: {names}.", "{n:,} routes cannot be compared: {names}.", 0,
+                           names="")  # fmt: skip
+            rooms = nfill("{n:,} room cannot be compared: {names}.", "{n:,} rooms cannot be compared: {names}.", 0,
+                          names="")  # fmt: skip
             texts += [
                 self._name_pieces(Direction.UNCLEAR),
-                _name_states(self.found.routes, (Direction.UNCLEAR,), _ROUTES[1]),
-                _name_states(self.found.rooms, (Direction.UNCLEAR,), _ROOMS[1]),
+                _name_states(self.found.routes, (Direction.UNCLEAR,), routes),
+                _name_states(self.found.rooms, (Direction.UNCLEAR,), rooms),
             ]
+        unjoined = nfill("In {run}, {n:,} room is joined to no exit or stair, so that its way out is not known: "
+                         "{names}.",
+                         "In {run}, {n:,} rooms are joined to no exit or stair, so that their way out is not known: "
+                         "{names}.", 0, run="", names="")  # fmt: skip
+        in_both = nfill("In both runs, {n:,} room is joined to no exit or stair, so that its way out is not known: "
+                        "{names}.",
+                        "In both runs, {n:,} rooms are joined to no exit or stair, so that their way out is not known: "
+                        "{names}.", 0, names="")  # fmt: skip
         was, now = ([words.cut(one, 30) for one in run.unjoined_rooms] for run in (self.before, self.after))
         if self.before.unjoined_rooms == self.after.unjoined_rooms:
-            texts.append(_name_all(_UNJOINED_IN_BOTH, now))
+            texts.append(_name_all(in_both, now))
         else:
-            texts += [_name_all(_UNJOINED, was, run=_("BEFORE")), _name_all(_UNJOINED, now, run=_("AFTER"))]
+            texts += [_name_all(unjoined, was, run=_("BEFORE")), _name_all(unjoined, now, run=_("AFTER"))]
         return [text for text in texts if text]
 
     def _name_pieces(self, direction: Direction) -> str:
@@ -342,8 +335,6 @@ class View:
         said = ngettext("For {n:,} of them the difference lies within the sampling interval.",
                         "For {n:,} of them the difference lies within the sampling interval.", within)  # fmt: skip
         return f"{text} {said}"
-
-    # ------------------------------------------------------------ counts
 
     def list_counts(self) -> list[blocks.Row]:
         """Return the pieces by class, those that stand apart, and the expected falls."""
@@ -434,8 +425,6 @@ class View:
         """Return what the rows and columns of that table are."""
         return _("Rows: class in BEFORE ({before}). Columns: class in AFTER ({after}).", **self.bases)
 
-    # ------------------------------------------------------------ the two runs
-
     def list_facts(self) -> list[Fact]:
         """Return what the two runs are, and the settings, uncertainties, motions, lines and versions that differ."""
         before, after = self.before, self.after
@@ -489,9 +478,6 @@ def _list_differing(
         if name in always or (was != now and name not in left_out):
             show = say_anchor if name == "anchor" else _say_value
             yield Fact(names.get(name, name), show(was), show(now), differs=was != now)
-
-
-# ---------------------------------------------------------------- the document
 
 
 def render_comparison(

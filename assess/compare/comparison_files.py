@@ -3,29 +3,36 @@
 As with reports, a later comparison replaces or removes only what compare.json lists, so that it is always written.
 compare.json is for other programs and the same in every language; units stand in the names. Its first two entries are
 those of results.json, so that a later comparison knows which files beside it are its own (`assess.report.ownership`).
-Standings, directions and states are the words of `assess.compare`; null is what a run lacks.
+Standings, directions and states are the words of `assess.compare`; null is what a run lacks. compare.xlsx has every
+row, whether it changed or not.
 """
 
+import datetime
 import json
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
-from assess.compare.changes import Change, Comparison, Total, count_states
+from assess.compare import comparison_document as say
+from assess.compare.changes import Change, Comparison, StateChange, Total, count_states
 from assess.compare.comparison_document import View, render_comparison
-from assess.compare.comparison_sheets import write_tables
-from assess.compare.past_run import COMPARISON, PastPiece, PastRun, PastState
+from assess.compare.past_run import COMPARISON, PastChance, PastPiece, PastRun, PastState
 from assess.delivery.deliver import Written, deliver, explain_fault, find_digest, flush_file, stage_for
 from assess.delivery.folders import NEW
 from assess.errors import InputError, PdfUnavailableError
 from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
-from assess.report import check_folder
+from assess.report import check_folder, words
+from assess.report.blocks import Cell, Table, plain_words
 from assess.report.ownership import find_reports
 from assess.report.pages.pdf import attach, print_page
 from assess.report.pages.pdf_seal import seal
+from assess.report.provenance import report_time
 from assess.report.report_options import ReportOptions
+from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, write_sheets
+from assess.route_results import RouteState
 from assess.version import __version__
 
 _Past = TypeVar("_Past", PastPiece, PastState)
@@ -36,6 +43,13 @@ FILES: Mapping[str, str] = {name: f"compare.{name}" for name in ("xlsx", "html",
 """The formats in the order in which they are written: compare.json lists the others, and the PDF carries it."""
 FORMATS = ("html", "pdf", "xlsx")
 """The formats that are written where none are asked for, beside compare.json."""
+
+_TONES: dict[str, dict[str, Any]] = {
+    "worse": {"bg_color": "#8c1d3f", "font_color": "#ffffff", "bold": True},
+    "better": {"bg_color": "#d5e9f6", "font_color": "#1c1c1c"},
+    "same": {"bg_color": "#e9edf0"},
+}
+"""Looks of what gets worse or better."""
 
 
 def write_comparison(
@@ -103,8 +117,7 @@ def _write_all(
 ) -> PdfUnavailableError | None:
     """Write the files; return the error of a PDF that cannot be made.
 
-    `listed` gets the files but for compare.json with their SHA-256: None of the PDF, which carries compare.json, unless
-    it has no identifiers that could be made to follow from it.
+    `listed` gets the files but for compare.json with their SHA-256: None of the PDF, which carries compare.json.
     """
     data, missing = stage / FILES["json"], None
 
@@ -155,11 +168,8 @@ def describe(found: Comparison, files: Mapping[str, str | None] | None = None) -
         return {"before": before, "after": after}
 
     def total(one: Total) -> dict[str, Any]:
-        return {
-            **pair(one.before, one.after),
-            "comparable": one.is_comparable,
-            "within_sampling_interval": one.is_within,
-        }
+        fair, within = one.is_comparable, one.is_within
+        return {**pair(one.before, one.after), "comparable": fair, "within_sampling_interval": within}
 
     return {
         "schema": SCHEMA,
@@ -211,28 +221,146 @@ def _describe_state(state: PastState, _standing: str) -> dict[str, Any]:
 
 def _describe_piece(piece: PastPiece, standing: str) -> dict[str, Any]:
     return {
-        "floor": piece.floor,
-        "room": piece.room,
-        "quantity": piece.quantity,
-        "standing": standing,
-        "class": piece.risk.word,
-        "basis": piece.basis,
-        **asdict(piece.chance),
-    }
+        "floor": piece.floor, "room": piece.room, "quantity": piece.quantity, "standing": standing,
+        "class": piece.risk.word, "basis": piece.basis, **asdict(piece.chance),
+    }  # fmt: skip
 
 
 def _run(run: PastRun) -> dict[str, Any]:
     return {
-        "results": run.path.name,
-        "results_sha256": run.sha256,
-        "results_written": f"{run.written:%Y-%m-%dT%H:%M:%SZ}",
-        "schema": run.schema,
-        "version": run.version,
-        "code": run.code or None,
-        "building": run.name,
-        "workbook": run.workbook,
-        "workbook_sha256": run.workbook_sha256,
-        "basis": run.main_basis,
-        "settings": dict(run.settings),
-        "unjoined_rooms": list(run.unjoined_rooms),
+        "results": run.path.name, "results_sha256": run.sha256, "results_written": f"{run.written:%Y-%m-%dT%H:%M:%SZ}",
+        "schema": run.schema, "version": run.version, "code": run.code or None, "building": run.name,
+        "workbook": run.workbook, "workbook_sha256": run.workbook_sha256, "basis": run.main_basis,
+        "settings": dict(run.settings), "unjoined_rooms": list(run.unjoined_rooms),
+    }  # fmt: skip
+
+
+def write_tables(view: View, path: Path, progress: Progress = SILENT) -> None:
+    """Write compare.xlsx in the language in use, as `assess.report.xlsx.pen.write_sheets` does."""
+    found = view.found
+
+    def write_moves(pen: Pen, page: Any) -> None:
+        table = view.tabulate_moves()
+        labels = [plain_words(one.heading) for one in table.columns]
+        pen.heads(page, labels, [24, *(14 for _label in labels[1:])])
+        below = _write_rows(pen, page, 1, table)
+        pen.put(page, below, 0, view.say_moves(), pen.style("plain"))
+
+    items = [
+        *_list_change_columns(),
+        Column(_("Item"), 14, lambda one: one.row.item),
+        Column(_("Description"), 22, lambda one: one.row.description),
+        Column(_("Floor"), 8, lambda one: one.row.floor),
+        Column(_("Room"), 14, lambda one: one.row.room),
+        *_of_both(lambda run: _("Pieces, {run}", run=run), 9,
+                  lambda one, at: getattr(one.sides[at], "quantity", None), COUNT),
+        *_of_both(lambda run: _("Class, {run}", run=run), 16,
+                  lambda one, at: plain_words(say.mark_standing(one.states[at]))),
+        *_list_chances(lambda piece: piece.chance),
+        *_of_both(lambda run: _("Basis, {run}", run=run), 13,
+                  lambda one, at: say.name_basis(one.sides[at].basis) if one.sides[at] else None),
+        Column(_("Input that differs"), 40, lambda one: "; ".join(say.say_inputs(one))),
+    ]  # fmt: skip
+    facts = [
+        Column(_("What"), 40, lambda one: one.label),
+        Column(_("BEFORE"), 44, lambda one: one.before),
+        Column(_("AFTER"), 44, lambda one: one.after),
+        Column(_("Differs"), 10, lambda one: words.yes_or_no(one.differs)),
+    ]
+    sheets: dict[str, Callable[[Pen, Any], object]] = {
+        _("Summary"): partial(_write_summary, view),
+        _("Moved classes"): write_moves,
+        _("Items"): lambda pen, page: pen.listing(page, items, found.pieces),
     }
+    column = partial(Column, width=20, read=lambda one: one.row.name)
+    if found.routes:
+        sheets[_("Routes")] = partial(_write_states, [column(_("Route"))], found.routes)
+    if found.rooms:
+        own = [column(_("Room")), Column(_("Floor"), 8, lambda one: one.row.floor)]
+        sheets[_("Rooms")] = partial(_write_states, own, found.rooms)
+    sheets[_("The two runs")] = lambda pen, page: pen.listing(page, facts, view.list_facts())
+    write_sheets(
+        path,
+        [(title, title, write) for title, write in sheets.items()],
+        title=_("Furniture in earthquakes, before and after: {building}", building=words.cut(view.title, 120)),
+        created=datetime.datetime.combine(report_time().date(), datetime.time()),
+        # Excel takes 255 characters in all above or below a printed page
+        texts=(words.cut(view.title, 40), words.cut(view.conditions, 80), words.cut(view.footer, 160)),
+        progress=progress,
+    )
+
+
+def _write_summary(view: View, pen: Pen, page: Any) -> None:
+    page.set_column(0, 0, 52)
+    page.set_column(1, 2, 12)
+    page.set_column(3, 3, 34)
+    texts = [
+        (view.title, "title"),
+        *((text, "warning") for text in (view.conditions, *view.list_warnings())),
+        (view.headline, "heading"),
+        *((text, "plain") for text in (*view.list_worse(), *view.list_others(), view.footer)),
+    ]
+    texts = [one for one in texts if one[0]]
+    for row, (text, look) in enumerate(texts):
+        pen.put(page, row, 0, text, pen.style(look))
+    below = len(texts)
+    for table in view.tabulate_counts():
+        for at, column in enumerate(table.columns):
+            pen.put(page, below + 1, at, column.heading, pen.style("head"))
+        below = _write_rows(pen, page, below + 2, table)
+
+
+def _write_rows(pen: Pen, page: Any, top: int, table: Table) -> int:
+    for number, row in enumerate(table.groups[0], top):
+        for at, one in enumerate(row.cells):
+            cell = one if isinstance(one, Cell) else Cell(one)
+            value = plain_words(cell.words) if cell.sort is None else cell.sort
+            form = "" if isinstance(value, str) else COUNT if isinstance(value, int) else "#,##0.00"
+            look = _TONES.get(row.kind if cell.kind == "change" else cell.kind, {})
+            pen.put(page, number, at, value, pen.style("total" if row.kind == "total" else "plain", form, **look))
+    return top + len(table.groups[0])
+
+
+def _write_states(own: Sequence[Column], rows: Sequence[StateChange], pen: Pen, page: Any) -> None:
+    columns = [
+        *_list_change_columns(),
+        *own,
+        *_of_both(lambda run: _("State, {run}", run=run), 16, lambda one, at: say.name_state(one.states[at])),
+        # what is missing is not in a chance that is not known
+        *_list_chances(lambda state: None if state.state == RouteState.NOT_KNOWN else state.chance),
+    ]
+    pen.listing(page, columns, rows)
+
+
+def _list_change_columns() -> list[Column]:
+    return [
+        Column(_("Change"), 20, lambda one: say.name_direction(one.direction)),
+        Column(
+            _("Within the sampling interval"),
+            12,
+            lambda one: "" if one.is_within is None else words.yes_or_no(one.is_within),
+        ),
+    ]
+
+
+def _of_both(label: Callable[[str], str], width: int, read: Callable[[Any, int], Any], form: str = "") -> list[Column]:
+    """Return a column of each run; `read` takes a change, and 0 for BEFORE or 1 for AFTER."""
+    return [
+        Column(label(run), width, partial(lambda at, one: read(one, at), at), form)
+        for at, run in enumerate((_("BEFORE"), _("AFTER")))
+    ]
+
+
+def _list_chances(find: Callable[[Any], PastChance | None]) -> list[Column]:
+    def part(at: int, name: str, one: Any) -> float | None:
+        return getattr(find(one.sides[at]), name, None) if one.sides[at] else None
+
+    return [
+        Column(label, 10, partial(part, at, name), CHANCE)
+        for at, run in enumerate((_("BEFORE"), _("AFTER")))
+        for label, name in (
+            (_("Chance, {run}", run=run), "probability"),
+            (_("Interval low, {run}", run=run), "low"),
+            (_("Interval high, {run}", run=run), "high"),
+        )
+    ]

@@ -89,12 +89,10 @@ class PastState:
 class PastRun:
     """One run, as its results.json has it.
 
-    `sha256` is that of the file, `written` when it was last changed, in UTC; `code` the SHA-256 of the program's code,
-    "" where an earlier version did not write it. `uncertainty` is what the draws of the simulation vary, `shaking` the
-    name of an assumed intensity, `site_ground` file, PGA and hash of a ShakeMap or of scenarios, "" where there is
-    none; `motions` are hashes of the recorded motions by the names of their files. Where any piece was simulated, those
-    by formula alone stand outside the classes. Expected numbers of routes and rooms are of those that are known; a room
-    that no segment joins to an exit or a stair is unjoined.
+    `sha256` is that of the file, `written` when it was last changed, in UTC; `code` the SHA-256 of the program, "" in
+    earlier versions. `uncertainty` is what the draws vary, `shaking` an assumed intensity, `site_ground` file, PGA and
+    hash of a ShakeMap or of scenarios, "" where there is none; `motions` are hashes by the names of files. Expected
+    numbers of routes and rooms are of those that are known; a room that no segment joins to an exit is unjoined.
     """
 
     path: Path
@@ -144,9 +142,6 @@ class PastRun:
         if self.is_counted(piece):
             return piece.risk.word
         return UNCONFIRMED if piece.basis == UNCONFIRMED else BY_FORMULA
-
-
-# ---------------------------------------------------------------- reading
 
 
 COMPARISON = "comparison"

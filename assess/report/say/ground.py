@@ -140,9 +140,6 @@ def describe_suite(results: Results) -> str:
                     names=words.clip(", ".join(words.cut(name, 60) for name in suite.names), 400))  # fmt: skip
 
 
-# ---------------------------------------------------------------- codes' profiles
-
-
 def used_profiles(results: Results) -> "list[Profile]":
     """Return the codes' profiles that serve a floor."""
     used = {one.profile.key for one in results.motions if one.profile}
@@ -265,8 +262,6 @@ def _list_drawn(results: Results) -> list[tuple[str, str]]:
         (_("Structure of the drawn buildings"), _(building.structure or "unknown")),
     ]
 
-
-# ---------------------------------------------------------------- peaks of the ground
 
 PEAKS = ("ground_pga", "sds")
 """Fields of the building that serve floors without a record, chances a year, and the code's force on anchors."""

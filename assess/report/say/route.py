@@ -139,10 +139,7 @@ def say_basis(chance: Chance) -> str:
 
 
 def find_chance(one: SegmentRow | RouteRow) -> float:
-    """Return the chance of a blockage for putting rows in order: 0 where it is not evaluated.
-
-    Where it is not known, that with unconfirmed pieces fallen.
-    """
+    """Return the chance by which rows are ordered: 0 if not evaluated, with unconfirmed pieces fallen if not known."""
     found = one.blocked_if_unconfirmed_fall if one.state == RouteState.NOT_KNOWN else one.blocked
     return found.probability if found else 0.0
 
@@ -244,9 +241,6 @@ def say_missing_after(one: RouteRow | RoomRow) -> str:
     return _("not known then; to settle it: {fix}", fix=say_missing(one.missing_after)) if one.missing_after else ""
 
 
-# ---------------------------------------------------------------- lists
-
-
 def list_unfixable(routes: RouteTables) -> list[tuple[RouteRow, str]]:
     """Return the routes that are blocked with nothing fallen, each with the segments where."""
     found = []
@@ -258,10 +252,7 @@ def list_unfixable(routes: RouteTables) -> list[tuple[RouteRow, str]]:
 
 
 def name_few(names: Sequence[str]) -> str:
-    """Return the first of some names of the workbook, cut, and how many more there are.
-
-    Of a draft's ``route: segment`` either is cut, so that its mark stays.
-    """
+    """Return the first of some names, cut, and how many more there are; a draft ``route: segment`` keeps its mark."""
     cut = []
     for name in names:
         route, mark, segment = name.rpartition(": ")
@@ -281,11 +272,9 @@ def say_way(way: WayRow, routes: RouteTables) -> str:
     return _("{way}; shares {segments} with the first", way=said, segments=shared) if way.shared else said
 
 
-def say_left_out(unevaluated: Sequence[str]) -> str:
+def say_left_out(segments: Sequence[str]) -> str:
     """Return how many segments are not evaluated; nothing where all are."""
-    if not unevaluated:
-        return ""
-    return ngettext("{n:,} segment not evaluated", "{n:,} segments not evaluated", len(unevaluated))
+    return ngettext("{n:,} segment not evaluated", "{n:,} segments not evaluated", len(segments)) if segments else ""
 
 
 def list_widths() -> list[tuple[str, list[str]]]:
@@ -440,10 +429,7 @@ def choose_rows(rows: Sequence[_Row], most: int, chance: Callable[[_Row], float]
 
 
 def list_segments(routes: RouteTables, most: int, *, is_short: bool = False) -> list[tuple[int, SegmentRow]]:
-    """Return segments with their numbers, from 1: all, or those most likely to be blocked.
-
-    A short list leaves out those that no piece reaches and that need no remark.
-    """
+    """Return segments, or the likeliest to be blocked, with numbers from 1; a short list leaves out untouched ones."""
     numbered = [(at, one) for at, one in enumerate(routes.segments, start=1) if not is_short or not is_untouched(one)]
     return choose_rows(numbered, most, lambda row: find_chance(row[1]))
 

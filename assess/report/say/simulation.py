@@ -426,8 +426,6 @@ def _say_changes(changes: Iterable[tuple[ItemResult, float, float]]) -> str:
     return higher if up else lower
 
 
-# ---------------------------------------------------------------- draws by place and scenarios
-
 BOORE = (
     "Boore D, Stewart J, Seyhan E, Atkinson G (2014). NGA-West2 equations for predicting PGA, PGV, and 5 % damped PSA "
     "for shallow crustal earthquakes. Earthquake Spectra 30(3):1057-1085. doi:10.1193/070113EQS184M"

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from assess.details import DETAILS, LEAST_FIXINGS, Detail
+from assess.details import LEAST_FIXINGS
 from assess.fields import schedule_fields
 from assess.i18n import fill, ngettext, number
 from assess.i18n import gettext as _
@@ -148,11 +148,6 @@ class Work:
         return self.row is self.entry.row.works[0]
 
     @property
-    def detail(self) -> Detail:
-        """How the pieces may be fixed."""
-        return DETAILS[self.row.detail]
-
-    @property
     def names(self) -> str:
         """Its pieces in short."""
         named = join_names(shorten_names(self.row.items))
@@ -225,8 +220,6 @@ def say_cost(cost: float | None) -> str:
     """Return a cost, in the workbook's currency."""
     return words.DASH if cost is None else number(cost, ",.0f" if cost == round(cost) else ",.2f")
 
-
-# ---------------------------------------------------------------- sentences
 
 SCREENING = fill("screening, not design")
 CHECKS = fill("Forces are for screening, not design: a structural engineer checks wall, fixings and the body of each "

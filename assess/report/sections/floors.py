@@ -165,10 +165,7 @@ def build_motions(view: View) -> blocks.Section:
 
 
 def _count_floors(view: View) -> blocks.Table:
-    """Return the pieces of each floor by class.
-
-    With columns of what is counted apart there is no room for those of the changes, which the section Verification has.
-    """
+    """Return the pieces of each floor by class; with columns of what is counted apart, without those of the changes."""
     total = view.content.total
     has_changes = bool(view.content.verified.done) and not total.has_apart
     caption = [

@@ -100,7 +100,7 @@ def _list_work(view: View) -> Iterator[blocks.Block]:
             groups[-1].append(blocks.Row([
                 str(entry.place),
                 found,
-                blocks.join_words((_(one.detail.title), blocks.note(f"({one.marks})") if one.marks else "")),
+                blocks.join_words((_(DETAILS[row.detail].title), blocks.note(f"({one.marks})") if one.marks else "")),
                 say.say_force(row.tension_kn),
                 f"{say.say_force(row.tension_high_kn)}{f' {say.HELD}' if one.is_held_by_weight else ''}",
                 *([say.say_force(row.tension_code_kn)] if has_code else []),

@@ -27,9 +27,9 @@ _CODES = {"pfa": "0.000", "pfv": "0.0"}
 
 @dataclass(frozen=True, slots=True)
 class MotionLine:
-    """One line: the motion of a floor along each axis that has one; `further` are the places of its other records.
+    """One line: the motion of a floor along each axis that has one.
 
-    Places count the lines from 0. `further` is empty in a line that is not the floor's own.
+    `further` are the lines, from 0, of its other records; it is empty in a line that is not the floor's own.
     """
 
     floor: FloorRow

@@ -258,8 +258,6 @@ class ItemFormulas:
         template = 'IF(AND({held}<>{YES},ISNUMBER({known})),{weight}*{rank_}+{chance_}-ROW()*1E-9,"")'
         return self._fill(template, known=known, weight=str(CLASS_WEIGHT), rank_=rank, chance_=chance)
 
-    # ------------------------------------------------------------ the motion of the row's floor
-
     def _area(self, key: str, last: int) -> str:
         letter = xl_col_to_name(FLOOR_AT[key])
         return f"{self._floors}${letter}$2:${letter}${last}"

@@ -104,8 +104,7 @@ def chance_behind(one: ItemResult, *, is_ideal: bool) -> float | None:
     """Return the chance by which it is classed, whatever the limits: None where nothing was simulated.
 
     It is the largest under any of its motions. Where simulation may not lower a class, a larger chance of the formula
-    counts, so that other limits do not lower it either; where nothing is known of the building, that of the faster
-    third of the draws.
+    counts; where nothing is known of the building, that of the faster third of the draws.
     """
 
     def chance(case: CaseRow) -> float:

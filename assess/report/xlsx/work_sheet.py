@@ -9,6 +9,7 @@ from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
+from assess.details import DETAILS
 from assess.fields import schedule_fields
 from assess.i18n import gettext as _
 from assess.report import words
@@ -103,7 +104,7 @@ def _list_columns(schedule: Schedule) -> list[Column]:
         Column(_("Description"), 16, lambda one: one.described),
         Column(_("Why, as run"), 34, key="why", read=lambda one: "; ".join(
             (f"{words.class_symbol(one.results[0])} {words.risk_words(one.results[0])}", one.chance, one.reason))),
-        Column(own["detail"].label, 13, lambda one: _(one.detail.title)),
+        Column(own["detail"].label, 13, lambda one: _(DETAILS[one.row.detail].title)),
         *(replace(own[key], label=f"{own[key].label}: {screening}", format=FORCE) for key in forces),
         replace(own["fixings"], align="center", read=lambda one: say_work.say_fixings(one.row)),
         own["unit_cost"],
