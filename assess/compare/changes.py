@@ -157,7 +157,7 @@ class Comparison:
         return {move: count for move, count in found.items() if count}
 
     def standings(self) -> list[str]:
-        """Return the classes, and of what stands apart what a run has."""
+        """Return the classes, and those of `past_run.APART` that occur."""
         there = {standing for move in self.moves for standing in move}
         return [*CLASSES, *(one for one in APART if one in there)]
 
@@ -292,7 +292,7 @@ def _direct_state(
 
 
 def lies_within(before: PastChance, after: PastChance) -> bool | None:
-    """Whether no difference of two chances can be told from their intervals; None where one has no interval.
+    """Whether the difference of two chances is within sampling error; None where one has no interval.
 
     The interval of the difference is that of two independent samples. Runs with the same seed share their draws, which
     makes the true interval shorter: then this is on the safe side.

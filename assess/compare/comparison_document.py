@@ -54,7 +54,6 @@ SETTINGS: Mapping[str, Text] = {
     "route_risk": fill("Limit on the chance that a route is blocked"),
 }
 """Settings by name; of later versions' others the name is shown."""
-
 _KINDS: Mapping[Direction, tuple[Text, Text, str]] = {
     Direction.WORSE: (fill("worse"), fill("higher class, or no longer anchored"), "worse"),
     Direction.RISES: (fill("higher chance"), fill("in the same class"), "worse"),
@@ -296,7 +295,7 @@ class View:
         return [text for text in (*map(self._name_pieces, WORSE), *ways) if text]
 
     def list_others(self) -> list[str]:
-        """Return what else is to be known at once: what is in one run alone, cannot be compared, or is not joined."""
+        """Return what is in one run only, cannot be compared, or is not joined to an exit."""
         texts = [*map(self._name_pieces, ONE_SIDED)]
         if self.found.has_same_basis:
             routes = nfill("{n:,} route cannot be compared: {names}.", "{n:,} routes cannot be compared: {names}.", 0,
@@ -337,7 +336,7 @@ class View:
         return f"{text} {said}"
 
     def list_counts(self) -> list[blocks.Row]:
-        """Return the pieces by class, those that stand apart, and the expected falls."""
+        """Return the pieces by class, those counted apart, and the expected falls."""
         found = self.found
         is_fair = not found.count(Direction.UNCLEAR, *ONE_SIDED)  # else a count changes for other reasons as well
         lines = [

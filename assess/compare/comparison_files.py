@@ -42,7 +42,7 @@ SCHEMA = "1.1"
 FILES: Mapping[str, str] = {name: f"compare.{name}" for name in ("xlsx", "html", "json", "pdf")}
 """The formats in the order in which they are written: compare.json lists the others, and the PDF carries it."""
 FORMATS = ("html", "pdf", "xlsx")
-"""The formats that are written where none are asked for, beside compare.json."""
+"""The default formats, in addition to compare.json."""
 
 _TONES: dict[str, dict[str, Any]] = {
     "worse": {"bg_color": "#8c1d3f", "font_color": "#ffffff", "bold": True},

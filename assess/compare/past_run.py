@@ -145,11 +145,10 @@ class PastRun:
 
 
 COMPARISON = "comparison"
-"""Entry that tells compare.json, which is no run, from results.json."""
+"""Entry that distinguishes compare.json, which is not a run, from results.json."""
 MOST_BYTES = 1 << 30
 """Size [bytes] above which a file is not read: 20,000 items take a tenth of it."""
 _MISSING = object()
-
 _Row = TypeVar("_Row")
 
 

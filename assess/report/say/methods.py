@@ -52,7 +52,7 @@ def _sum_up(rows: Sequence[Disagreement]) -> Group:
         formats, values = {column.name: column.format for column in method.columns}, dict[str, str]()
         for name in placeholders(reason.text) - {"value"}:
             found: list[Any] = []
-            if name in formats:  # what a simulation gives stands in a row of its own
+            if name in formats:  # results of a simulation are in a separate row
                 for one in results:
                     detail = one.governing.methods[method.key].detail
                     found.append(detail[name] if name in detail else getattr(one.governing.simulation, name))
@@ -167,4 +167,4 @@ _FACTS: Mapping[str, tuple[str, Callable[[ItemResult], float | None]]] = {
     "height_cm": (".0f", lambda one: one.item.height_cm),
     "pfa_to_start": (".2f", lambda one: one.governing.motion.pfa_g / one.item.breadth_to_height),
 }
-"""Format and reader of each number that a `Reason` may name besides the method's own columns."""
+"""Format and reader of each number that a `Reason` may name in addition to the method's columns."""

@@ -43,7 +43,7 @@ def order_rows(rows: Sequence[ItemResult], floors: Sequence[str]) -> list[ItemRe
 
 
 def list_apart(results: Iterable[ItemResult], basis: str) -> list[ItemResult]:
-    """Return the free-standing pieces that stand apart with a basis, or "" of the run's basis, the worst first."""
+    """Return the free-standing pieces counted apart on a basis ("": those of the run's own basis), the worst first."""
     found = [one for one in results if not one.is_anchored and one.apart == basis]
     return sorted(found, key=by_chance)
 
@@ -54,7 +54,7 @@ def list_risky(results: Iterable[ItemResult], basis: str = "") -> list[ItemResul
 
 
 def say_apart(results: Sequence[ItemResult]) -> list[str]:
-    """Return sentences on the free-standing pieces that stand apart, with what settles them; none where none do."""
+    """Return sentences on the free-standing pieces that are counted apart, and on what settles them."""
     texts = []
     if unconfirmed := list_apart(results, "unconfirmed"):
         text = ngettext("{n:,} piece is unconfirmed and counted apart, as nothing is known of its building or its "

@@ -155,7 +155,7 @@ def say_risk(risk: float) -> str:
 
 
 def say_bounds(chance: Chance) -> str:
-    """Return the bounds beside a chance, independent and fully correlated, ``58.1 / 34.0 %``."""
+    """Return the bounds of a chance, independent and fully correlated, ``58.1 / 34.0 %``."""
     independent, correlated = words.in_percent(chance.independent), words.in_percent(chance.correlated)
     return f"{independent} / {correlated} %".replace(" ", words.NO_BREAK)
 
@@ -216,7 +216,7 @@ def say_occupants(one: SegmentRow) -> str:
 
 
 def say_missing(missing: Sequence[MissingRow]) -> str:
-    """Return what is to be filled in, and in which cells; nothing where nothing is missing."""
+    """Return what to fill in, and in which cells; "" if nothing is missing."""
     texts = []
     for one in missing:
         names, cells = name_few(one.names), words.name_first(one.cells, MOST_NAMED)

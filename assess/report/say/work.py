@@ -110,7 +110,7 @@ class Entry:
 
     @property
     def reason(self) -> str:
-        """Why it comes where it does, besides its class: its importance, and its routes with the effect on them."""
+        """Why it has its place, apart from its class: its importance, and the effect on its routes."""
         importance = dict.fromkeys(one.item.importance for one in self.results if one.item.importance)
         routes: dict[str, list[RouteStep]] = {}
         for step in self.steps:
@@ -136,7 +136,7 @@ def list_entries(results: Results, rows: Sequence[ItemResult]) -> list[Entry]:
 
 @dataclass(frozen=True, slots=True)
 class Work:
-    """What is to be done to alike pieces of a room, as a part of an entry; `results` are these pieces."""
+    """The work on identical pieces of a room, as a part of an entry; `results` are these pieces."""
 
     entry: Entry
     row: WorkRow
@@ -166,7 +166,7 @@ class Work:
 
     @property
     def reason(self) -> str:
-        """Why it is to be done: that of its entry, and with which other pieces it only helps together."""
+        """The reason of its entry, and the other pieces without which it does not help."""
         others = [one for one in self.entry.row.works if one is not self.row]
         texts = [self.entry.reason] if self.is_first and self.entry.reason != words.DASH else []
         if others and self.entry.row.is_together:

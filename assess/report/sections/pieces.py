@@ -1,4 +1,4 @@
-"""The pieces: alike ones in one row for a client, a row each, as lines of fixed columns, and by every method."""
+"""The pieces: identical ones grouped for a client, one a row, as lines of fixed columns, and by every method."""
 
 import unicodedata
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from assess.results import ItemResult, count_pieces
 from assess.text import natural_key
 
 MOST_GROUPS = 110
-"""Groups of alike pieces that the client's edition has room for."""
+"""Groups of identical pieces that the client's edition has room for."""
 
 MOST_RISKY = 60
 """Risky pieces that stand in place of the whole table."""
@@ -26,7 +26,7 @@ MOST_LINES = 5000
 
 
 def build_groups(view: View) -> blocks.Section:
-    """Return the groups of alike pieces, floor by floor, those most likely to fall where there are too many."""
+    """Return the groups of identical pieces, floor by floor; of too many, those most likely to fall."""
     groups: dict[tuple[object, ...], list[ItemResult]] = {}
     for one in view.content.listed:
         groups.setdefault((*find_kind(one), one.item.anchored, words.say_bracket(one)), []).append(one)
@@ -68,7 +68,7 @@ def build_groups(view: View) -> blocks.Section:
 
 
 def say_chances(group: Sequence[ItemResult]) -> str:
-    """Return the chance of alike pieces with its interval; where rows differ, from the least to the largest of both."""
+    """Return the chance of grouped pieces with its interval; where rows differ, the range of both."""
     texts = {words.chance(one) for one in group}
     if len(texts) == 1:
         return texts.pop()

@@ -26,7 +26,7 @@ def show_state(state: RouteState, text: str) -> blocks.Span:
 
 
 class Line(NamedTuple):
-    """A line of the page: a route, or rooms whose way to the street is alike; `one` stands for all of them."""
+    """A line of the page: a route, or rooms with identical ways to the street, represented by `one`."""
 
     one: RouteRow | RoomRow
     names: str
@@ -98,7 +98,7 @@ def _list_route_lines(view: View) -> list[Line]:
 
 
 def _list_room_lines(view: View) -> list[Line]:
-    """Return the rooms by their best way to the street, the worst first; those that are alike as one line."""
+    """Return the rooms by their best way to the street, the worst first; identical ones as one line."""
 
     def kind(one: RoomRow) -> tuple[object, ...]:
         if one.state == RouteState.OPEN:

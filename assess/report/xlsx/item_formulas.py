@@ -254,7 +254,7 @@ class ItemFormulas:
         return self._fill('IF(IFERROR(OR({tests}),TRUE),{EDITED},"")', tests=",".join(tests))
 
     def _order(self, known: str, rank: str, chance: str) -> str:
-        """Return what orders pieces by class and chance; nothing for anchored ones, or where `known` is no number."""
+        """Return the number that orders pieces by class and chance; "" if anchored, or if `known` is not a number."""
         template = 'IF(AND({held}<>{YES},ISNUMBER({known})),{weight}*{rank_}+{chance_}-ROW()*1E-9,"")'
         return self._fill(template, known=known, weight=str(CLASS_WEIGHT), rank_=rank, chance_=chance)
 

@@ -67,7 +67,7 @@ def is_as_run(one: ItemResult) -> bool:
 
 
 def say_inputs_that_settle(one: ItemResult) -> str:
-    """Return what is to be filled in or changed so that the class of an unconfirmed piece rests on simulation."""
+    """Return what to fill in or change so that the class of an unconfirmed piece rests on simulation."""
     building = {name: _(BUILDING.column(name).label) for name in ("storeys", "period")}
     texts = {
         "unknown_building": _("fill in {storeys} or {period} in {sheet}", sheet=_(BUILDING.name), **building),
@@ -101,7 +101,7 @@ def listed_chance(one: ItemResult) -> float | None:
 
 
 def chance_behind(one: ItemResult, *, is_ideal: bool) -> float | None:
-    """Return the chance by which it is classed, whatever the limits: None where nothing was simulated.
+    """Return the chance by which it is classed at any limits; None if nothing was simulated.
 
     It is the largest under any of its motions. Where simulation may not lower a class, a larger chance of the formula
     counts; where nothing is known of the building, that of the faster third of the draws.
@@ -159,7 +159,7 @@ def class_in_force(one: ItemResult) -> str:
 
 
 def class_notes(one: ItemResult) -> str:
-    """Return what is to be said of the class."""
+    """Return the remarks on the class."""
     adopted, highest = one.adopted, words.find_highest(one)
     texts = [
         say_unsettled(one),
@@ -172,7 +172,7 @@ def class_notes(one: ItemResult) -> str:
 
 
 def say_bracket_held(one: ItemResult) -> str:
-    """Return what is to be known of the bracket by which a piece counts as anchored; "" of any other."""
+    """Return the remark on the bracket by which a piece counts as anchored; "" for other pieces."""
     return words.say_bracket(one) if one.is_anchored and is_as_run(one) else ""
 
 
@@ -186,7 +186,7 @@ def order_number(one: ItemResult, row: int) -> float | None:
 
 
 def item_columns(results: Results) -> list[Column]:
-    """Return the columns of Items, in order: at the end those that the workbook had of its own, and hidden workings."""
+    """Return the columns of Items, in order, the workbook's own columns and hidden workings last."""
     known, is_hidden = {one.key: one for one in item_fields(results.methods)}, not results.has_simulated
 
     def live(key: str, label: str, width: int, read: Read, **more: Any) -> Column:

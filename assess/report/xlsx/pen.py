@@ -223,7 +223,7 @@ def write_sheets(
     middle of it what holds for all numbers, and at the foot. Raises OSError if the file cannot be written;
     CancelledError if `progress` was cancelled (no file is left).
     """
-    head, conditions, foot = map(_plain, texts)
+    head, conditions, foot = map(_plain, texts)  # a blank ends the size before each, whose digits would count to it
 
     def write(book: Any) -> None:
         book.set_properties({"title": title, "created": created})
@@ -247,5 +247,5 @@ def write_sheets(
 
 
 def _plain(text: str) -> str:
-    """Return a text in which an ampersand is no command; a blank stands before it, as digits would be a size."""
+    """Escape ampersands, which begin commands in headers and footers."""
     return text.replace("&", "&&")

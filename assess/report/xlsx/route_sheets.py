@@ -156,7 +156,7 @@ def _list_outlook(row: type, routes: RouteTables) -> dict[str, Read]:
 
 @dataclass(frozen=True, slots=True)
 class _Beside:
-    """A piece beside a segment; in the list of steps it stands for itself."""
+    """A piece next to a segment."""
 
     segment: SegmentRow
     near: BesideRow
@@ -176,7 +176,7 @@ class _Step:
 
 
 def write_route_pieces(pen: Pen, page: Any, content: Content) -> None:
-    """Write the pieces beside every segment, and the steps of every route."""
+    """Write the pieces next to every segment, and the steps of every route."""
     routes, results, fields = content.run.route_tables, content.results, route_fields(BesideRow)
 
     held = _("anchored: its chances are those without the anchor")

@@ -269,7 +269,7 @@ def _count_as_run(results: Sequence[ItemResult], basis: str) -> list[int]:
 
 
 def _count_apart(results: Sequence[ItemResult]) -> list[int]:
-    """Return the numbers of `_list_apart` as run, when no row is to be run again."""
+    """Return the numbers of `_list_apart` as run."""
     anchored = count_pieces(one for one in results if one.is_anchored)
     return [0, anchored, count_pieces(results)]
 
