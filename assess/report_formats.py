@@ -61,7 +61,7 @@ class Format:
         elif self.key == "json":
             job.write_data()
         elif self.key == "docx":
-            from assess.report.word import write_word
+            from assess.report.word.writer import write_word
 
             write_word(job.content, path, job.options, job.progress)
         else:
