@@ -6,6 +6,7 @@ They are known without loading what writes them.
 import importlib.util
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -14,7 +15,45 @@ from assess.errors import InputError
 from assess.i18n import fill
 
 if TYPE_CHECKING:
-    from assess.report.job import Job
+    from assess.progress import Progress
+    from assess.report.content import Content
+    from assess.report.pages.pdf import Layout
+    from assess.report.report_options import ReportOptions
+    from assess.results import Results
+
+
+@dataclass(frozen=True)
+class Job:
+    """One set of reports that is written into a stage; the content is built once for all of them.
+
+    `listed` are the files of the run but for results.json, with their SHA-256, None of one that carries results.json;
+    `layouts` are the PDFs that were begun, by the names of their files.
+    """
+
+    results: "Results"
+    options: "ReportOptions"
+    progress: "Progress"
+    stage: Path
+    listed: dict[str, str | None] = field(default_factory=dict)
+    layouts: dict[str, "Layout"] = field(default_factory=dict)
+
+    @property
+    def data(self) -> Path:
+        """results.json as it stands in the stage."""
+        return self.stage / FILES["json"]
+
+    @cached_property
+    def content(self) -> "Content":
+        """What HTML, PDF and Excel show, in the language of the reports."""
+        from assess.report.content import Content
+
+        return self.progress.wait_for(lambda: Content(self.results))
+
+    def write_data(self) -> None:
+        """Write results.json, with the list of the other files."""
+        from assess.report.data import write_json
+
+        write_json(self.results, self.data, self.progress, files=dict(sorted(self.listed.items())))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +83,7 @@ class Format:
                         packages=", ".join(missing), how=say_install(self.extra))  # fmt: skip
             raise InputError(text)
 
-    def write(self, job: "Job", path: Path) -> None:
+    def write(self, job: Job, path: Path) -> None:
         """Write the file; what writes it is imported only now."""
         if self.edition is not None:
             from assess.report.pages.pdf import finish_pdf

@@ -26,9 +26,8 @@ from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report import check_folder, words
 from assess.report.blocks import Cell, Table, plain_words
-from assess.report.ownership import find_reports
+from assess.report.ownership import find_reports, seal
 from assess.report.pages.pdf import attach, print_page
-from assess.report.pages.pdf_seal import seal
 from assess.report.provenance import report_time
 from assess.report.report_options import ReportOptions
 from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, write_sheets

@@ -16,11 +16,9 @@ from assess.delivery.folders import NEW
 from assess.errors import InputError, OutputError, PdfUnavailableError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
-from assess.report.job import Job
-from assess.report.ownership import DATA, find_reports
-from assess.report.pages.pdf_seal import seal
+from assess.report.ownership import DATA, find_reports, seal
 from assess.report.report_options import ReportOptions
-from assess.report_formats import ALL, DEFAULT, FILES, FORMATS
+from assess.report_formats import ALL, DEFAULT, FILES, FORMATS, Job
 from assess.results import Results
 
 _LAST = ("json", *(one.key for one in FORMATS.values() if one.edition))
@@ -70,12 +68,12 @@ def write_reports(
         with stage_for(folder) as stage, options.spoken():
             job = Job(results, options, progress, stage / NEW)
             missing = _write_all(job, folder, ordered)
-            gone = deliver(stage, folder, lambda target: _find_old(target, job.written), DATA, progress)
+            gone = deliver(stage, folder, lambda target: _find_old(target, [*job.listed, DATA]), DATA, progress)
     except OSError as error:
         raise explain_fault(folder, error, FILES.values()) from None
     if missing:
         raise missing
-    files = {name: folder / file for name, file in FILES.items() if file in job.written}
+    files = {name: folder / file for name, file in FILES.items() if file in {*job.listed, DATA}}
     return Written(files, removed=[folder / name for name in gone])
 
 

@@ -58,6 +58,8 @@ Words: TypeAlias = Inline | Sequence[Inline]
 Runs: TypeAlias = list[Inline]
 BREAK = Span("", "break")
 DASH = "–"
+_TAG = re.compile(r"<(em|strong)>(.*?)</\1>", re.DOTALL)
+_RAISED = re.compile(r"(?<=[^\W\d_])_([^\W_]+\*?)|\^(?:\((-?\d+(?:[.,]\d+)?)\)|(-?\d+(?:[.,]\d+)?))")
 
 
 def strong(words: Words) -> Span:
@@ -72,25 +74,13 @@ def note(words: Words) -> Span:
 
 def rich(text: str, /, **values: Any) -> list[Inline]:
     """Return a translated text whose tags <em> and <strong> count; those inside `values` do not."""
-    return parse_markup(markup(text, **values))
-
-
-_TAG = re.compile(r"<(em|strong)>(.*?)</\1>", re.DOTALL)
-
-
-def parse_markup(text: Any) -> list[Inline]:
-    """Return escaped text with the tags <em> and <strong> as words."""
     from markupsafe import Markup
 
-    found: list[Inline] = []
-    at = 0
-    for tag in _TAG.finditer(str(text)):
+    text, found, at = str(markup(text, **values)), list[Inline](), 0
+    for tag in _TAG.finditer(text):
         found += [Markup(text[at : tag.start()]).unescape(), Span(Markup(tag[2]).unescape(), tag[1])]  # noqa: S704
         at = tag.end()
     return [one for one in (*found, Markup(text[at:]).unescape()) if one]  # noqa: S704 - only to be unescaped
-
-
-_RAISED = re.compile(r"(?<=[^\W\d_])_([^\W_]+\*?)|\^(?:\((-?\d+(?:[.,]\d+)?)\)|(-?\d+(?:[.,]\d+)?))")
 
 
 def lower_indices(text: str) -> list[Inline]:

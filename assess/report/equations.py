@@ -70,25 +70,20 @@ def split_line(line: str) -> list[Part]:
     parts: list[Part] = []
     end = 0
     for start, stop in _find_stretches(line):
+        equation, depth, breaks = line[start:stop], 0, list[int]()
+        for token in _TOKEN.finditer(equation):
+            depth += (token.lastgroup == "open") - (token.lastgroup == "close")
+            breaks += [token.start()] if token.lastgroup == "relation" and depth == 0 else []
+        texts = [equation[one:other] for one, other in pairwise([0, *breaks[1:], len(equation)])]
         try:
-            found = _split_relations(line[start:stop])
+            found = [(text.rstrip(), write_tex(text), text[len(text.rstrip()) :]) for text in texts]
         except NotationError:
             continue
-        parts += [*([Part(line[end:start])] if start > end else []), *found]
+        parts += [Part(line[end:start])] if start > end else []
+        for text, tex, blank in found:
+            parts += [Part(text, tex), *([Part(blank)] if blank else [])]
         end = stop
     return [*parts, Part(line[end:])] if end < len(line) else parts
-
-
-def _split_relations(equation: str) -> list[Part]:
-    depth, starts, parts = 0, list[int](), list[Part]()
-    for token in _TOKEN.finditer(equation):
-        depth += (token.lastgroup == "open") - (token.lastgroup == "close")
-        starts += [token.start()] if token.lastgroup == "relation" and depth == 0 else []
-    for start, end in pairwise([0, *starts[1:], len(equation)]):
-        text = equation[start:end]
-        blank = text[len(text.rstrip()) :]
-        parts += [Part(text.rstrip(), write_tex(text)), *([Part(blank)] if blank else [])]
-    return parts
 
 
 def write_tex(equation: str) -> str:
@@ -108,16 +103,25 @@ def write_tex(equation: str) -> str:
 
 def _find_stretches(line: str) -> Iterator[tuple[int, int]]:
     """Yield start and end of each stretch that may be an equation: it has a relation or a product, and no words."""
-    depth, stretch = 0, list[Token]()
-    tokens = list(_TOKEN.finditer(line))
+    tokens, depth, stretches = list(_TOKEN.finditer(line)), 0, [list[Token]()]
     for at, token in enumerate(tokens):
         depth += (token.lastgroup == "open") - (token.lastgroup == "close")
         if _ends_stretch(tokens, at, depth):
-            yield from _find_bounds(stretch)
-            stretch, depth = [], 0
+            stretches.append([])
+            depth = 0
         else:
-            stretch.append(token)
-    yield from _find_bounds(stretch)
+            stretches[-1].append(token)
+    for stretch in stretches:  # without what belongs to the words around it, and none that words interrupt
+        if [one.lastgroup for one in stretch[-2:]] == ["name", "open"]:
+            continue
+        while stretch and stretch[0].lastgroup in ("space", "close"):
+            stretch.pop(0)
+        if stretch and stretch[0].lastgroup == "relation":
+            continue
+        while stretch and stretch[-1].lastgroup in ("space", "open"):
+            stretch.pop()
+        if any(one.lastgroup == "relation" or (one.lastgroup == "operator" and one[0] in "·/^") for one in stretch):
+            yield stretch[0].start(), stretch[-1].end()
 
 
 def _ends_stretch(tokens: list[Token], at: int, depth: int) -> bool:
@@ -132,20 +136,6 @@ def _ends_stretch(tokens: list[Token], at: int, depth: int) -> bool:
     around = [one.lastgroup for one in tokens[at - 1 : at] + tokens[at + 1 : at + 3]]
     is_alone = len(around) == 3 and around[:2] == ["space", "space"]
     return is_alone and len(text) == 1 and "a" <= text <= "z" and around[2] in ("name", "word")
-
-
-def _find_bounds(stretch: list[Token]) -> Iterator[tuple[int, int]]:
-    """Yield start and end of a stretch without what belongs to the words around it; not of one that words interrupt."""
-    if [one.lastgroup for one in stretch[-2:]] == ["name", "open"]:
-        return
-    while stretch and stretch[0].lastgroup in ("space", "close"):
-        stretch = stretch[1:]
-    if stretch and stretch[0].lastgroup == "relation":
-        return
-    while stretch and stretch[-1].lastgroup in ("space", "open"):
-        stretch = stretch[:-1]
-    if any(one.lastgroup == "relation" or (one.lastgroup == "operator" and one[0] in "·/^") for one in stretch):
-        yield stretch[0].start(), stretch[-1].end()
 
 
 # ---------------------------------------------------------------- from tokens to TeX

@@ -1,13 +1,19 @@
 """Which files of a folder are reports of an earlier run, and may be replaced or removed: those that results.json lists.
 
 results.json names the reports of its run with their SHA-256, so that a file that was changed since, or put there by
-hand, is known to be the user's. It lists neither itself nor, by a hash, the PDFs, which carry it: see
-`assess.report.pages.pdf_seal`. A file is a report only by its hash, or as a sealed PDF, and only names that this
-program writes are looked at: folders of reports travel, and a list may be anybody's.
+hand, is known to be the user's. It lists neither itself nor, by a hash, report.pdf and annex.pdf, which carry it. A
+file is a report only by its hash, or as a sealed PDF, and only names that this program writes are looked at: folders of
+reports travel, and a list may be anybody's.
+
+A PDF is sealed by its file identifier (ISO 32000-1, 14.4: two strings in the trailer, the first one permanent, the
+second one anew with each change): the first is made of results.json, the second of all other bytes of the file. Both
+keep their length, so that no offset changes.
 """
 
+import hashlib
 import json
 import os
+import re
 from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Any
@@ -15,12 +21,12 @@ from typing import Any
 from assess.delivery.deliver import find_digest, name_aside
 from assess.errors import InputError
 from assess.i18n import fill
-from assess.report.pages.pdf_seal import is_sealed
 
 DATA = "results.json"
 _HEAD = 4 << 20
 """Bytes at the head of results.json within which its first two entries stand."""
 MOST_NAMED = 3
+_ID = re.compile(rb"/ID ?\[\(([0-9a-f]{32})\) ?\(([0-9a-f]{32})\)\]")
 
 
 def find_reports(
@@ -84,12 +90,22 @@ def read_list(path: Path) -> Mapping[str, str | None]:
     """Return the reports that a results.json lists, itself among them, with their SHA-256 where it is known.
 
     A file of another name that begins alike serves as well. Empty if the file is missing or not of this program. Only
-    its head is read: it may be large.
+    its first two entries are read: it may be large.
     """
     if path.is_symlink() or not path.is_file():
         return {}
     with path.open("rb") as file:
-        head = _read_head(file.read(_HEAD).decode("utf-8", "replace"))
+        rest = file.read(_HEAD).decode("utf-8", "replace").lstrip()
+    decoder, head = json.JSONDecoder(), dict[str, Any]()
+    while rest[:1] in ("{", ",") and len(head) < 2:
+        try:
+            name, end = decoder.raw_decode(rest[1:].lstrip())
+            rest = rest[1:].lstrip()[end:].lstrip()
+            value, end = decoder.raw_decode(rest.removeprefix(":").lstrip())
+            rest = rest.removeprefix(":").lstrip()[end:].lstrip()
+        except (ValueError, RecursionError):
+            break
+        head[str(name)] = value
     origin = head.get("assess")
     if not (
         isinstance(head.get("schema"), str) and isinstance(origin, dict) and isinstance(origin.get("version"), str)
@@ -104,17 +120,32 @@ def read_list(path: Path) -> Mapping[str, str | None]:
     return {name: digest if isinstance(digest, str) else None for name, digest in plain.items()} | {path.name: None}
 
 
-def _read_head(text: str) -> dict[str, Any]:
-    """Return the first two entries of an object in JSON; fewer if they cannot be read."""
-    decoder, found = json.JSONDecoder(), dict[str, Any]()
-    rest = text.lstrip()
-    while rest[:1] in ("{", ",") and len(found) < 2:
-        try:
-            name, end = decoder.raw_decode(rest[1:].lstrip())
-            rest = rest[1:].lstrip()[end:].lstrip()
-            value, end = decoder.raw_decode(rest.removeprefix(":").lstrip())
-            rest = rest.removeprefix(":").lstrip()[end:].lstrip()
-        except (ValueError, RecursionError):
-            break
-        found[str(name)] = value
-    return found
+# ---------------------------------------------------------------- PDFs
+
+
+def seal(path: Path, data: Path) -> bool:
+    """Write the identifiers into a PDF that carries `data`; False if it has none of the expected form. OSError."""
+    sealed = _put_identifiers(path.read_bytes(), data)
+    if sealed is not None:
+        path.write_bytes(sealed)
+    return sealed is not None
+
+
+def is_sealed(path: Path, data: Path) -> bool:
+    """Whether a PDF is as it was written, next to a results.json as it was written. OSError if unreadable."""
+    content = path.read_bytes()
+    return data.is_file() and _put_identifiers(content, data) == content
+
+
+def _put_identifiers(content: bytes, data: Path) -> bytes | None:
+    places = list(_ID.finditer(content))
+    if len(places) != 1:
+        return None
+    (start, end), (own_start, own_end) = places[0].span(1), places[0].span(2)
+    content = content[:start] + _hash(data.read_bytes()) + content[end:]
+    before, after = content[:own_start], content[own_end:]
+    return before + _hash(before + b"0" * 32 + after) + after
+
+
+def _hash(content: bytes) -> bytes:
+    return hashlib.sha256(content).hexdigest()[:32].encode()

@@ -1,5 +1,6 @@
 """Templates: the frame of a page, the cover and the drawings of plans, the standard ones or a firm's own."""
 
+import importlib
 import re
 import traceback
 from collections.abc import Mapping
@@ -32,13 +33,14 @@ def render_template(name: str, options: ReportOptions, values: Mapping[str, Any]
     Raises InputError if a template of the firm's own cannot be used: it names the file, the line and the reason;
     CancelledError if the work was cancelled.
     """
-    TemplateError, SecurityError = progress.wait_for(_import_errors)
+    jinja2 = progress.wait_for(lambda: importlib.import_module("jinja2"))
+    errors = (jinja2.TemplateError, TypeError, ValueError, ArithmeticError, LookupError, AttributeError)
     parts = []
     try:
         for part in progress.wait_for(lambda: open_template(name, options)).generate(**values):
             progress.check()
             parts.append(part)
-    except (TemplateError, SecurityError, TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
+    except errors as error:
         if options.templates is None:
             raise  # the standard templates are right, or it is a fault of this program
         raise InputError(_describe(error, options)) from None
@@ -52,7 +54,8 @@ def check_templates(options: ReportOptions) -> None:
     """
     if options.templates is None:
         return
-    TemplateError, _SecurityError = _import_errors()
+    from jinja2 import TemplateError
+
     with options.spoken():
         for path in sorted(options.templates.rglob("*.j2")):
             try:
@@ -106,10 +109,3 @@ def break_words(text: str) -> Any:
         pieces = [word[at : at + size] for at in range(0, len(word), size)] if count > 1 else [word]
         parts = [*parts[:-1], parts[-1] + pieces[0], *pieces[1:]]
     return Markup("<wbr>").join(escape(part) for part in parts)
-
-
-def _import_errors() -> tuple[type[Exception], type[Exception]]:
-    from jinja2 import TemplateError
-    from jinja2.exceptions import SecurityError
-
-    return TemplateError, SecurityError

@@ -2,7 +2,7 @@
 
 import importlib
 import pkgutil
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
 from typing import Any, Literal
@@ -107,11 +107,6 @@ class View:
             )
             for page in self.progress.checked(self.content.shown_floors)
         }
-
-    @cached_property
-    def segment_rows(self) -> Set[int]:
-        """The numbers of the segments that have a row in the section on routes."""
-        return {number for number, _one in self.shown_segments}
 
     @cached_property
     def shown_segments(self) -> Sequence[tuple[int, SegmentRow]]:

@@ -15,7 +15,7 @@ from assess.compare.comparison_files import write_comparison
 from assess.compare.past_run import read_run
 from assess.errors import CancelledError, InputError, OutputError, PdfUnavailableError
 from assess.progress import Progress
-from assess.report.pages.pdf_seal import is_sealed
+from assess.report.ownership import is_sealed
 from assess.settings import Settings
 from tests.compare.past import change, item, write_routed_run
 from tests.workbooks import UNVERIFIED

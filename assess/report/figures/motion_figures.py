@@ -99,13 +99,15 @@ def choose_traced(results: Results, rows: Sequence[ItemResult]) -> list[Traced]:
     if not results.series.is_there:
         return []
     simulated = [one for one in rows if one.is_simulated]
-
-    def by_risk(one: ItemResult) -> tuple[object, ...]:
-        found = one.governing.simulation
-        return bool(one.apart), -one.adopted.upper, -found.probability if found else 0.0, natural_key(one.item.item)
-
+    by_risk = sorted(
+        [one for one in simulated if not one.is_anchored] or simulated,
+        key=lambda one: (
+            bool(one.apart), -one.adopted.upper, -found.probability if (found := one.governing.simulation) else 0.0,
+            natural_key(one.item.item),
+        ),
+    )  # fmt: skip
     alike: dict[tuple[int, float, float], list[ItemResult]] = {}
-    for one in sorted([one for one in simulated if not one.is_anchored] or simulated, key=by_risk):
+    for one in by_risk:
         alike.setdefault((one.governing.motion.index, one.item.breadth_cm, one.item.height_cm), []).append(one)
     firsts = {own[0].item.index: own for own in alike.values()}
     undecided = [index for index, own in firsts.items() if "undecided" in own[0].adopted.flags]
@@ -257,7 +259,10 @@ Acceleration = tuple[str, str, FloatArray, float]
 
 
 def _paint_motions(accelerations: Sequence[Acceleration], series: Series, motion: str, figure: Any) -> None:
-    """Paint accelerations, and beside them the spectra that the series hold of a motion, if one is named."""
+    """Paint accelerations, and next to them the spectra that the series hold of a motion, if one is named.
+
+    They are thin curves, the band from their 16th to 84th percentile, their mean, and the target.
+    """
     left = figure
     if motion:
         left, right = figure.subfigures(1, 2, width_ratios=(1.2, 1))
@@ -273,12 +278,9 @@ def _paint_motions(accelerations: Sequence[Acceleration], series: Series, motion
         axes.spines[["top", "right"]].set_visible(False)
     left.supylabel(_("acceleration [g]"), fontsize=8)
     panels[-1].set_xlabel(_("time [s]"), fontsize=8)
-    if motion:
-        _paint_spectra(right.subplots(), series, motion)
-
-
-def _paint_spectra(axes: Any, series: Series, motion: str) -> None:
-    """Paint every spectrum as a thin curve, the band of the 16th to 84th percentile, the mean, and the target."""
+    if not motion:
+        return
+    axes = right.subplots()
     periods, pseudo = series[f"{motion}/periods_s"], series[f"{motion}/spectra_g"]
     shown = slice(None, None, max(1, -(-periods.size // MOST_ORDINATES)))
     ends = np.full((len(pseudo), 1), np.nan)  # lifts the pen between two spectra

@@ -192,7 +192,11 @@ def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) 
     spots = names.place_spots(places, [*shapes, *falls, *taken[len(shapes) :]])
     inside = [(words.cut(one.name, NAMED), (*one.centre, *one.centre)) for one in rooms if one.name]
     room_names = [one for one in names.place(inside, taken) if one is not None]
-    labels = [one for one in names.place(_list_risky(pieces), taken) if one is not None]
+    named = [(one.upper, one) for one in pieces if one.upper is not None and one.upper >= RiskClass.MEDIUM]
+    least = RiskClass.HIGH if any(upper >= RiskClass.HIGH for upper, _one in named) else RiskClass.MEDIUM
+    named = sorted((pair for pair in named if pair[0] >= least), key=lambda pair: -pair[0])
+    risky = [(one.name, bounds(one.corners)) for _upper, one in named[:MOST]]
+    labels = [one for one in names.place(risky, taken) if one is not None]
     return Plan(
         key=f"plan-{[floor.floor for floor in results.floor_rows].index(page.floor.floor) + 1}",
         title=page.title,
@@ -248,14 +252,6 @@ def turn(item: ItemRow) -> float:
     if item.angle_deg is not None:
         return item.angle_deg
     return 90.0 if item.axis_given == "Y" else 0.0
-
-
-def _list_risky(pieces: Sequence[Piece]) -> list[tuple[str, Bounds]]:
-    """Return name and box of the pieces that are or may be of high or very high class; without one, medium class."""
-    risky = [(one.upper, one) for one in pieces if one.upper is not None and one.upper >= RiskClass.MEDIUM]
-    least = RiskClass.HIGH if any(upper >= RiskClass.HIGH for upper, _one in risky) else RiskClass.MEDIUM
-    named = sorted((pair for pair in risky if pair[0] >= least), key=lambda pair: -pair[0])
-    return [(one.name, bounds(one.corners)) for _upper, one in named[:MOST]]
 
 
 def _step(least: float) -> float:

@@ -11,10 +11,10 @@ from assess.risk import RiskClass
 
 def draw_plan(plan: Plan, view: View) -> Image:
     """Return the plan; on a screen its pieces and segments lead to their rows."""
-    values = {
-        "plan": plan, "for_print": view.for_print, "segment_rows": view.segment_rows, "most_rows": MOST_ROWS,
-    }  # fmt: skip
-    text = open_template("plan.svg.j2", view.options).render(values)
+    rows = {number for number, _one in view.shown_segments}
+    text = open_template("plan.svg.j2", view.options).render(
+        plan=plan, for_print=view.for_print, segment_rows=rows, most_rows=MOST_ROWS
+    )
     return Image(text[text.index("<svg") :].rstrip())
 
 

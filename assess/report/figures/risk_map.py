@@ -14,7 +14,7 @@ from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.blocks import Figure
 from assess.report.figures.draw import HATCHES, build_figure, draw, label
-from assess.report.figures.labels import Bounds, Point, box_around, is_inside, overlap
+from assess.report.figures.labels import Point, box_around, is_inside, overlap
 from assess.results import ItemResult, Results, count_pieces
 from assess.risk import LIMITS, RiskClass
 from assess.units import ROUNDING
@@ -108,7 +108,17 @@ def _write_texts(axes: Any, lines: Sequence[Line], places: Mapping[Point, Sequen
     named = 0
     for place, (x, y), ones in zip(places, symbols, places.values(), strict=True):
         name = label(ones[0].item.item, 14) + (f" +{len(ones) - 1}" if len(ones) > 1 else "")
-        box = _find_room((x, y), name, taken) if named < MOST_NAMES else None
+        width = LETTER * len(name)
+        aside, above = GAP + width / 2, GAP + LINE / 2
+        tried = [
+            box_around(centre, width, LINE)
+            for centre in ((x + aside, y), (x - aside, y), (x, y + above), (x, y - above))
+        ]
+        free = (
+            box for box in tried
+            if is_inside(box, (0.0, 0.0, *PANEL)) and not any(overlap(box, one) for one in taken)
+        )  # fmt: skip
+        box = next(free, None) if named < MOST_NAMES else None
         if box is not None:
             offset = ((box[0] + box[2]) / 2 - x, (box[1] + box[3]) / 2 - y)
             axes.annotate(name, place, xytext=offset, textcoords="offset points", fontsize=7, ha="center", va="center",
@@ -127,20 +137,6 @@ def paint_legend(figure: Any, *, has_checked: bool = True) -> None:
     checked = Line2D([], [], color=INK, linewidth=1.2, linestyle=":", label=_("range in which the formula is checked"))
     handles = [*fields, checked] if has_checked else fields
     figure.legend(handles=handles, loc="outside lower center", ncols=5, fontsize=7, frameon=False)
-
-
-def _find_room(at: Point, text: str, taken: Sequence[Bounds]) -> Bounds | None:
-    """Return a box for a text beside the symbol `at`, within the panel and on no box that is taken; None if none is.
-
-    Tried are right, left, above and below.
-    """
-    (x, y), width = at, LETTER * len(text)
-    aside, above = GAP + width / 2, GAP + LINE / 2
-    for centre in ((x + aside, y), (x - aside, y), (x, y + above), (x, y - above)):
-        box = box_around(centre, width, LINE)
-        if is_inside(box, (0.0, 0.0, *PANEL)) and not any(overlap(box, one) for one in taken):
-            return box
-    return None
 
 
 # ---------------------------------------------------------------- the figure of a report

@@ -40,8 +40,8 @@ class Style:
 class Stretch:
     """A segment as it is drawn; `number` is that of its row among all segments, from 1.
 
-    `sign` is where its sign stands: None where there is no room and nothing to warn of. `is_held` tells that anchors
-    alone keep its state from being worse, `is_draft` that its route is drafted from a building model and not walked.
+    `sign` is where its sign stands: None where there is no room and nothing to warn of; `marks` stand next to it.
+    `is_draft` tells that its route is drafted from a building model and not walked.
     """
 
     number: int
@@ -51,19 +51,9 @@ class Stretch:
     start: Point
     end: Point
     corners: Corners
-    is_held: bool = False
+    marks: str = ""
     is_draft: bool = False
     sign: Point | None = None
-
-    @property
-    def is_open(self) -> bool:
-        """Whether there is nothing to warn of."""
-        return self.style.name == "open" and not self.marks
-
-    @property
-    def marks(self) -> str:
-        """What stands beside its sign."""
-        return "⚓" if self.is_held else ""
 
 
 def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
@@ -94,7 +84,7 @@ def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
             start=start,
             end=end,
             corners=rectangle(start, angle, along, one.clear_width_used_m),
-            is_held=is_held(one, routes.risk),
+            marks=words.ANCHORED if is_held(one, routes.risk) else "",  # anchors alone keep it from being worse
             is_draft=is_draft(one.route),
         ))  # fmt: skip
     return {floor: sorted(own, key=lambda one: order.index(one.style.name)) for floor, own in found.items()}
@@ -102,12 +92,8 @@ def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
 
 def _title(one: SegmentRow, risk: float) -> str:
     """Return the state and the chance of a segment, and which piece to fix or what to fill in where it is not open."""
-    said = _(
-        "{segment}: {state}; chance of blockage {chance}",
-        segment=say_segment(one),
-        state=say_outlook(one, risk),
-        chance=say_blocked(one),
-    )
+    said = _("{segment}: {state}; chance of blockage {chance}",
+             segment=say_segment(one), state=say_outlook(one, risk), chance=say_blocked(one))  # fmt: skip
     if one.missing:
         return f"{said}; {say_missing(one.missing)}"
     if one.state == RouteState.OPEN or one.most_likely_piece is None or one.is_blocked_standing:
@@ -123,7 +109,7 @@ def place_signs(ways: Sequence[Stretch], taken: Sequence[Bounds], unit: float) -
         tried = [sign_box((x + share * (x_end - x), y + share * (y_end - y)), unit) for share in _ALONG]
         ranked = zip(find_covered(tried, held), find_covered(tried, taken), tried, strict=True)
         *covered, best = min(ranked, key=lambda found: found[:2])
-        if one.is_open and sum(covered) > 0:
+        if one.style.name == "open" and not one.marks and sum(covered) > 0:
             yield one
             continue
         held.append(best)

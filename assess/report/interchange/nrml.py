@@ -22,15 +22,7 @@ from assess.i18n import Text, fill
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.known_ground import find_ground
 from assess.pipeline.piece_fragility import PieceFragilities, PieceFragility
-from assess.report.interchange.exchange_files import (
-    Exchange,
-    choose_curves,
-    describe_curve,
-    describe_origin,
-    find_stem,
-    name_safely,
-    round_number,
-)
+from assess.report.interchange import exchange_files as files
 from assess.text import plain_line
 from assess.units import GRAVITY
 
@@ -51,7 +43,7 @@ PER_FLOOR = (
 )
 
 
-def write_nrml(assessment: Assessment, found: PieceFragilities) -> Exchange:
+def write_nrml(assessment: Assessment, found: PieceFragilities) -> files.Exchange:
     """Write the curves as a fragility model, NAME-nrml.xml; where no lognormal stands in, the table is written.
 
     The scenario of `assessment` gives the PGA of the ground; `found` is of it and against PFA, by
@@ -59,26 +51,26 @@ def write_nrml(assessment: Assessment, found: PieceFragilities) -> Exchange:
     not known, or there is no curve to be written.
     """
     pga = find_ground_pga(assessment, found.im)
-    kept, left = choose_curves("OpenQuake", found.curves, _judge)
-    stem, floors = find_stem(assessment), list(dict.fromkeys(floor for one in kept for floor in one.floors))
+    kept, left = files.choose_curves("OpenQuake", found.curves, _judge)
+    stem, floors = files.find_stem(assessment), list(dict.fromkeys(floor for one in kept for floor in one.floors))
     root = ET.Element("nrml", {"xmlns": NAMESPACE})
-    (name,) = name_safely([f"assess {stem}"], "_")
+    (name,) = files.name_safely([f"assess {stem}"], "_")
     model = ET.SubElement(root, "fragilityModel", {"id": name, "assetCategory": "contents", "lossCategory": "contents"})
-    lines = [describe_origin(assessment, found), f"{PER_FLOOR} Ground PGA {pga / GRAVITY:.4g} g."]
+    lines = [files.describe_origin(assessment, found), f"{PER_FLOOR} Ground PGA {pga / GRAVITY:.4g} g."]
     description = ET.SubElement(model, "description")
     ET.SubElement(model, "limitStates").text = LIMIT_STATE
-    level = dict(zip(floors, name_safely(floors, "_"), strict=True))
-    for name, one in zip(name_safely((one.name for one in kept), "_"), kept, strict=True):
+    level = dict(zip(floors, files.name_safely(floors, "_"), strict=True))
+    for name, one in zip(files.name_safely((one.name for one in kept), "_"), kept, strict=True):
         for floor in one.floors:
             taxonomy = f"{name}|{level[floor]}"
             ratio = pga / max(motion.demand.pfa for motion in one.motions if motion.floor == floor)
             what = f"{taxonomy}: {plain_line(one.name)} on floor {plain_line(floor)}"
-            lines.append(" ".join([f"{what}, PFA / ground PGA {1 / ratio:.4g}.", *describe_curve(one, found.im)]))
+            lines.append(" ".join([f"{what}, PFA / ground PGA {1 / ratio:.4g}.", *files.describe_curve(one, found.im)]))
             _add_function(model, taxonomy, one, ratio)
     description.text = "\n".join([*lines, *(f"Left out: {plain_line(one.name)}: {one.why}." for one in left)])
     ET.indent(root)
     data: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
-    return Exchange(files={f"{stem}-nrml.xml": data + b"\n"}, left_out=left)
+    return files.Exchange(files={f"{stem}-nrml.xml": data + b"\n"}, left_out=left)
 
 
 def find_ground_pga(assessment: Assessment, im: str) -> float:
@@ -141,4 +133,4 @@ def _add_function(model: ET.Element, name: str, one: PieceFragility, ratio: floa
 
 
 def _write_number(value: float) -> str:
-    return repr(round_number(value))
+    return repr(files.round_number(value))

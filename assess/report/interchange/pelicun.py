@@ -23,16 +23,7 @@ from assess.fragility import MOST_MISFIT
 from assess.i18n import Text, fill
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.piece_fragility import PieceFragilities, PieceFragility
-from assess.report.interchange.exchange_files import (
-    Exchange,
-    choose_curves,
-    describe_curve,
-    describe_origin,
-    find_stem,
-    name_safely,
-    round_number,
-    say_sizes,
-)
+from assess.report.interchange import exchange_files as files
 from assess.text import plain_line
 from assess.units import GRAVITY
 from assess.version import __version__
@@ -53,27 +44,27 @@ USE = (
 )
 
 
-def write_pelicun(assessment: Assessment, found: PieceFragilities) -> Exchange:
+def write_pelicun(assessment: Assessment, found: PieceFragilities) -> files.Exchange:
     """Write the lognormals as a damage database, NAME-pelicun.csv and NAME-pelicun.json; pelicun takes nothing else.
 
     `found` is of `assessment`, by `assess.pipeline.piece_fragility.find_piece_fragilities`. Raises InputError if there
     is no curve to be written.
     """
-    kept, left = choose_curves("pelicun", found.curves, _judge)
-    stem = find_stem(assessment)
-    names = name_safely((f"{stem} {one.name} {found.im}" for one in kept), ".")
+    kept, left = files.choose_curves("pelicun", found.curves, _judge)
+    stem = files.find_stem(assessment)
+    names = files.name_safely((f"{stem} {one.name} {found.im}" for one in kept), ".")
     ids = [f"assess.{name}" for name in names]
     demand, unit, size = DEMANDS[found.im]
     table = io.StringIO()
     writer = csv.writer(table, lineterminator="\n")
     writer.writerow(HEADS)
     for key, curve in zip(ids, (one.curve for one in kept), strict=True):
-        theta, beta = round_number(curve.median / size), round_number(curve.dispersion)
+        theta, beta = files.round_number(curve.median / size), files.round_number(curve.dispersion)
         writer.writerow([key, 0, demand, unit, 0, 1, "lognormal", theta, beta, ""])
     about: dict[str, Any] = {
         "_GeneralInformation": {
             "ShortName": f"assess: {plain_line(stem)}",
-            "Description": describe_origin(assessment, found),
+            "Description": files.describe_origin(assessment, found),
             "Version": __version__,
             "Use": USE,
             "LeftOut": [{"Name": plain_line(one.name), "Reason": str(one.why)} for one in left],
@@ -81,13 +72,13 @@ def write_pelicun(assessment: Assessment, found: PieceFragilities) -> Exchange:
     }
     for key, one in zip(ids, kept, strict=True):
         about[key] = {
-            "Description": f"{plain_line(one.name)}: {say_sizes(one)}",
-            "Comments": " ".join(describe_curve(one, found.im)),
+            "Description": f"{plain_line(one.name)}: {files.say_sizes(one)}",
+            "Comments": " ".join(files.describe_curve(one, found.im)),
             "SuggestedComponentBlockSize": "1 EA",
             "RoundUpToIntegerQuantity": "True",
             "LimitStates": {"LS1": {"DS1": {"Description": "Overturns."}}},
         }
-    return Exchange(
+    return files.Exchange(
         files={
             f"{stem}-pelicun.csv": table.getvalue().encode(),
             f"{stem}-pelicun.json": f"{json.dumps(about, ensure_ascii=False, allow_nan=False, indent=1)}\n".encode(),

@@ -19,6 +19,8 @@ MOST_NAMED = 5
 _BLANKS = ("Cc", "Cf", "Zs", "Zl", "Zp")
 _VARIANTS = frozenset(map(chr, (*range(0xFE00, 0xFE10), *range(0xE0100, 0xE01F0))))
 """Categories and characters that nobody would miss: spaces, marks of direction, choices of variant."""
+_OF_SEGMENTS = {"start": "from_place", "end": "to_place"}
+"""Fields of the sheet Routes that `SegmentRow` calls otherwise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +50,16 @@ def list_missing(results: Results) -> list[Missing]:
     for sheet, column in [(one, column) for one in rows for column in one.columns]:
         if column.kind not in ("text", "records") or column.source == FLOORS.name:  # those are checked in Floors
             continue
-        name, lacking = column.name, [(row, find_missing(_text(results, row, column.name))) for row in rows[sheet]]
-        lacking = [(row, lack) for row, lack in lacking if lack]
+        name, lacking = column.name, []
+        for row in rows[sheet]:
+            if name.startswith("record_"):  # shown is what its file calls the event, too
+                own = results.motions_of(row.floor, name.removeprefix("record_").upper())
+                text = " ".join(f"{one.record} {one.event}" for one in own)
+            else:
+                key = _OF_SEGMENTS.get(name, name) if isinstance(row, SegmentRow) else name
+                text = str((row.field(key) if isinstance(row, ItemRow) else getattr(row, key)) or "")
+            if lack := find_missing(text):
+                lacking.append((row, lack))
         if lacking:
             row = lacking[0][0]
             if hasattr(row, "cell"):
@@ -96,17 +106,3 @@ def describe(missing: Sequence[Missing], nowhere: Collection[str]) -> list[Probl
         return listed
     message = nfill("the same is true of {n} more field.", "the same is true of {n} more fields.", left)
     return [*listed[:MOST_LISTED], Problem("warning" if nowhere else "note", "", "", message)]
-
-
-_OF_SEGMENTS = {"start": "from_place", "end": "to_place"}
-"""Fields of the sheet Routes that `SegmentRow` calls otherwise."""
-
-
-def _text(results: Results, row: Any, name: str) -> str:
-    """Return a field of a row as reports show it: of a record its name and what its file calls the event."""
-    if name.startswith("record_"):
-        axis = name.removeprefix("record_").upper()
-        return " ".join(f"{one.record} {one.event}" for one in results.motions_of(row.floor, axis))
-    if isinstance(row, SegmentRow):
-        name = _OF_SEGMENTS.get(name, name)
-    return str((row.field(name) if isinstance(row, ItemRow) else getattr(row, name)) or "")
