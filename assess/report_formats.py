@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Literal
 
 from assess.environment import say_install
 from assess.errors import InputError
-from assess.i18n import fill
 
 if TYPE_CHECKING:
     from assess.progress import Progress
@@ -79,9 +78,10 @@ class Format:
     def check(self) -> None:
         """Raise InputError, with what to install, if a package is missing."""
         if missing := self.missing:
-            text = fill("the format {format} needs {packages}, which is not installed. {how}", format=self.key,
-                        packages=", ".join(missing), how=say_install(self.extra))  # fmt: skip
-            raise InputError(text)
+            raise InputError.about(
+                "the format {format} needs {packages}, which is not installed. {how}",
+                format=self.key, packages=", ".join(missing), how=say_install(self.extra),
+            )  # fmt: skip
 
     def write(self, job: Job, path: Path) -> None:
         """Write the file; what writes it is imported only now."""

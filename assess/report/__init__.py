@@ -58,7 +58,7 @@ def write_reports(
     unknown = [name for name in formats if name not in FILES]
     if unknown:
         known = ", ".join(FILES)
-        raise InputError(fill("formats: {name!r} is unknown, expected some of: {known}", name=unknown[0], known=known))
+        raise InputError.about("formats: {name!r} is unknown, expected some of: {known}", name=unknown[0], known=known)
     folder, options = Path(folder), options or ReportOptions()
     options = options if options.language else replace(options, language=results.provenance.language)
     check_folder(folder, formats)
@@ -100,7 +100,7 @@ def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
     there = next((one for one in (folder, *folder.absolute().parents) if one.exists()), folder)
     if not (there.is_dir() and os.access(there, os.W_OK)):
         why = fill("you have no right to write there") if there.is_dir() else fill("{path} is a file", path=there)
-        raise OutputError(fill("{folder} cannot be written to: {why}. Name another folder.", folder=folder, why=why))
+        raise OutputError.about("{folder} cannot be written to: {why}. Name another folder.", folder=folder, why=why)
     if formats and folder.is_dir():
         _find_old(folder, {FILES[name] for name in (*formats, "json")})
 
@@ -135,11 +135,8 @@ def _write_all(job: Job, folder: Path, formats: Sequence[str]) -> PdfUnavailable
                 if "json" in formats[:at]:
                     job.write_data()
             except OSError as error:
-                why = error.strerror or str(error)
-                text = fill(
-                    "{file} could not be written: {why}. {folder} is left as it was.", file=file, why=why, folder=folder
-                )
-                raise OutputError(text) from None
+                raise OutputError.about("{file} could not be written: {why}. {folder} is left as it was.", file=file,
+                                        why=error.strerror or str(error), folder=folder) from None  # fmt: skip
         pdfs = [job.stage / file for file in job.layouts if file in job.listed]
         others = [path for path in pdfs if not seal(path, job.data)]
         if others:  # they have no place for identifiers: results.json lists them by a hash

@@ -20,7 +20,6 @@ from typing import Any
 
 from assess.delivery.deliver import find_digest, name_aside
 from assess.errors import InputError
-from assess.i18n import fill
 
 DATA = "results.json"
 _HEAD = 4 << 20
@@ -52,27 +51,23 @@ def find_reports(
         blocked = [name for name in others if name in wanted and name not in mine]
     except OSError as error:
         why = error.strerror or str(error)
-        raise InputError(fill("{path} cannot be read: {why}.", path=error.filename or folder, why=why)) from None
+        raise InputError.about("{path} cannot be read: {why}.", path=error.filename or folder, why=why) from None
     if blocked:
-        raise InputError(
-            fill("{path} is a folder or a link, where a report is to be written. Move or rename it.",
-                 path=folder / blocked[0])
-        )  # fmt: skip
+        raise InputError.about("{path} is a folder or a link, where a report is to be written. Move or rename it.",
+                               path=folder / blocked[0])  # fmt: skip
     if mine:
         shown = ", ".join(mine[:MOST_NAMED]) + (", ..." if len(mine) > MOST_NAMED else "")
         if any(name in own for own in listed.values() for name in mine):
-            message = fill(
+            raise InputError.about(
                 "out: {folder} holds files that were changed after they were written, or that its {data} lists without "
                 "their hash: {names}. Move or rename them to keep them, or choose another folder. Nothing was touched.",
                 folder=folder, data=data, names=shown,
             )  # fmt: skip
-        else:
-            message = fill(
-                "out: {folder} holds files that would be replaced, but no {data} beside them lists them as reports of "
-                "an earlier run: {names}. Move or rename them, or choose another folder. Nothing was touched.",
-                folder=folder, data=data, names=shown,
-            )  # fmt: skip
-        raise InputError(message)
+        raise InputError.about(
+            "out: {folder} holds files that would be replaced, but no {data} beside them lists them as reports of an "
+            "earlier run: {names}. Move or rename them, or choose another folder. Nothing was touched.",
+            folder=folder, data=data, names=shown,
+        )  # fmt: skip
     return frozenset(name for name in found if (folder / name).is_file() and name not in others)
 
 
@@ -107,17 +102,13 @@ def read_list(path: Path) -> Mapping[str, str | None]:
             break
         head[str(name)] = value
     origin = head.get("assess")
-    if not (
-        isinstance(head.get("schema"), str) and isinstance(origin, dict) and isinstance(origin.get("version"), str)
-    ):
+    if not (isinstance(head.get("schema"), str) and isinstance(origin, dict)):
         return {}
-    files = origin.get("files")
+    files = origin.get("files") if isinstance(origin.get("version"), str) else None
     if not isinstance(files, dict):
         return {}
-    plain = {
-        name: digest for name, digest in files.items() if name not in (".", "..") and not set(name) & set("/\\:\0")
-    }
-    return {name: digest if isinstance(digest, str) else None for name, digest in plain.items()} | {path.name: None}
+    plain = {name: value for name, value in files.items() if name not in (".", "..") and not set(name) & set("/\\:\0")}
+    return {name: value if isinstance(value, str) else None for name, value in plain.items()} | {path.name: None}
 
 
 # ---------------------------------------------------------------- PDFs

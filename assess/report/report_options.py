@@ -31,21 +31,20 @@ class ReportOptions:
     def __post_init__(self) -> None:
         if self.language and self.language not in LANGUAGES:
             known = ", ".join(LANGUAGES)
-            raise InputError(fill("language is {name!r}, expected one of {known}", name=self.language, known=known))
+            raise InputError.about("language is {name!r}, expected one of {known}", name=self.language, known=known)
         folder = self.templates
         if folder is None:
             return
         if not folder.is_dir():
-            raise InputError(fill("templates: there is no folder {folder}", folder=folder))
+            raise InputError.about("templates: there is no folder {folder}", folder=folder)
         standard = {path.relative_to(resources.templates()).as_posix() for path in resources.templates().rglob("*.*")}
         own = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
         unknown = sorted(name for name in own - standard if not Path(name).name.startswith("."))
         former = [name for name in unknown if name.startswith("sections/") or name == "report.html.j2"]
         if former:
-            raise InputError(
-                fill("templates: {folder}: {name} is no longer a template. Choose and order the sections in "
-                     "page.html.j2, reword them in texts/en.po, and put your cover in cover.html.j2.",
-                     folder=folder, name=former[0])
+            raise InputError.about(
+                "templates: {folder}: {name} is no longer a template. Choose and order the sections in page.html.j2, "
+                "reword them in texts/en.po, and put your cover in cover.html.j2.", folder=folder, name=former[0],
             )  # fmt: skip
         if unknown:
             near = difflib.get_close_matches(unknown[0], standard, 1, 0.5)
@@ -53,9 +52,9 @@ class ReportOptions:
             raise InputError(join(" ", (fault, *(fill("Did you mean {name}?", name=name) for name in near))))
         if not own & standard:
             names = ", ".join(sorted({name.split("/")[0] for name in standard}))
-            raise InputError(
-                fill("templates: {folder} holds no template: expected some of {names}, as in the standard templates",
-                     folder=folder, names=names)
+            raise InputError.about(
+                "templates: {folder} holds no template: expected some of {names}, as in the standard templates",
+                folder=folder, names=names,
             )  # fmt: skip
 
     @property

@@ -128,59 +128,39 @@ def _list_for_routes(results: Results) -> Lines:
 def list_limits(results: Results) -> Sequence[str]:
     """Return the limits of the methods, in plain words."""
     of_simulation = (
-        _(
-            "A simulated chance is that of the rigid block under motions that match the floor's record, or that are "
-            "drawn where it has none. Its sampling interval covers the number of draws only."
-        ),
-        _(
-            "How much stronger or weaker an earthquake like this one could be, and how much pieces differ from their "
-            "nominal sizes, centre of gravity and restitution, is assumed, not measured on furniture."
-        ),
+        _("A simulated chance is that of the rigid block under motions that match the floor's record, or that are "
+          "drawn where it has none. Its sampling interval covers the number of draws only."),
+        _("How much stronger or weaker an earthquake like this one could be, and how much pieces differ from their "
+          "nominal sizes, centre of gravity and restitution, is assumed, not measured on furniture."),
         *(() if results.provenance.suite else (ground.say_signs(results),)),
-        _(
-            "Rocking depends on details of a motion that a response spectrum does not contain, such as long pulses. "
-            "The behaviour under the recorded motion itself is therefore shown next to the chance."
-        ),
-    )
+        _("Rocking depends on details of a motion that a response spectrum does not contain, such as long pulses. "
+          "The behaviour under the recorded motion itself is therefore shown next to the chance."),
+    )  # fmt: skip
     of_routes = (
-        _(
-            "Evacuation routes are screened by a rule of this program, as no published rule exists. Only pieces that "
-            "overturn count: not what slides or rolls, spilt contents, jammed doors, fallen ceilings or people."
-        ),
-        _(
-            "An open route is not shown to be safe: its chance is below the chosen risk in this scenario, as far as "
-            "the workbook lists the furniture. The direction of a recorded motion is not used: a piece may fall either "
-            "way, unless it stands against a wall and the outline of its room tells on which side that is."
-        ),
-    )
+        _("Evacuation routes are screened by a rule of this program, as no published rule exists. Only pieces that "
+          "overturn count: not what slides or rolls, spilt contents, jammed doors, fallen ceilings or people."),
+        _("An open route is not shown to be safe: its chance is below the chosen risk in this scenario, as far as "
+          "the workbook lists the furniture. The direction of a recorded motion is not used: a piece may fall either "
+          "way, unless it stands against a wall and the outline of its room tells on which side that is."),
+    )  # fmt: skip
     return [
-        _(
-            "The chance is that of overturning in this scenario. It is not a chance per year, and does not state how "
-            "likely the scenario is."
-        ),
-        _(
-            "Every piece is a rigid block on a rigid floor, moving in one vertical plane. Its centre of gravity is at "
-            "mid-height unless Centre of gravity says otherwise, which simulation takes into account and the formulas "
-            "do not. A top-heavy piece falls sooner, a bottom-heavy one later."
-        ),
-        _(
-            "Chances and classes leave sliding out. How a piece of known friction starts to move, and how far it would "
-            "slide if it did not rock, is shown beside them: a piece that slides may still hit people or block a way."
-        ),
-        _(
-            "A wall at the back of a piece lowers neither its chance nor its class, as the wall's own motion and "
-            "pounding feed in energy that is left out. The chance with the wall is shown beside."
-        ),
+        _("The chance is that of overturning in this scenario. It is not a chance per year, and does not state how "
+          "likely the scenario is."),
+        _("Every piece is a rigid block on a rigid floor, moving in one vertical plane. Its centre of gravity is at "
+          "mid-height unless Centre of gravity says otherwise, which simulation takes into account and the formulas "
+          "do not. A top-heavy piece falls sooner, a bottom-heavy one later."),
+        _("Chances and classes leave sliding out. How a piece of known friction starts to move, and how far it would "
+          "slide if it did not rock, is shown beside them: a piece that slides may still hit people or block a way."),
+        _("A wall at the back of a piece lowers neither its chance nor its class, as the wall's own motion and "
+          "pounding feed in energy that is left out. The chance with the wall is shown beside."),
         _("Vertical motion is left out."),
-        _(
-            "Not covered: castors, stacked or leaning pieces, pieces linked to each other, open drawers, spilt "
-            "contents, fastenings that fail."
-        ),
+        _("Not covered: castors, stacked or leaning pieces, pieces linked to each other, open drawers, spilt "
+          "contents, fastenings that fail."),
         *(f"{_(results.formula.title)}: {_(text)}" for text in results.formula.assumptions),
         _("A piece marked as anchored is not classified: it depends on its anchors; its free-standing risk is shown."),
         *(of_simulation if results.has_simulated else ()),
         *(of_routes if results.has_routes else ()),
-    ]
+    ]  # fmt: skip
 
 
 # ---------------------------------------------------------------- how it was made

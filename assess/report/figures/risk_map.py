@@ -175,11 +175,8 @@ def _name(methods: Sequence["MethodInfo"]) -> str:
 def _describe(
     height: float, pieces: Sequence[ItemResult], ratio: float, methods: Sequence["MethodInfo"]
 ) -> Iterator[str]:
-    yield _(
-        "Chance of overturning of pieces {height:.0f} cm high by these methods: {methods}.",
-        height=height,
-        methods=_name(methods),
-    )
+    yield _("Chance of overturning of pieces {height:.0f} cm high by these methods: {methods}.",
+            height=height, methods=_name(methods))  # fmt: skip
     yield ngettext(
         "The symbol is the one free-standing piece within 10 % of this height, at its breadth and the PFA of the "
         "motion that governs it.",
@@ -187,29 +184,20 @@ def _describe(
         "the motion that governs it.",
         count_pieces(pieces),
     )
-    yield _(
-        "A symbol shows the class adopted for the piece, which may differ from the field it lies on: the fields are "
-        "those of the formulas, for this height."
-    )
+    yield _("A symbol shows the class adopted for the piece, which may differ from the field it lies on: the fields "
+            "are those of the formulas, for this height.")  # fmt: skip
     if any(one.apart for one in pieces):
-        yield _(
-            "White symbols show pieces that are counted apart: a pentagon is unconfirmed, a triangle that points down "
-            "is by formula only."
-        )
-    yield _(
-        "Names are those of the worst piece at each place, with the number of further rows there; names for which "
-        "there is no room are left out."
-    )
+        yield _("White symbols show pieces that are counted apart: a pentagon is unconfirmed, a triangle that points "
+                "down is by formula only.")  # fmt: skip
+    yield _("Names are those of the worst piece at each place, with the number of further rows there; names for which "
+            "there is no room are left out.")  # fmt: skip
     by_velocity = [method for method in methods if any(flag.startswith("pfv_") for flag in method.flags)]
     if not by_velocity:
         return
     switching = _name([method for method in by_velocity if method.ruled_by == "pfa"])
     if math.isnan(ratio):
-        yield _(
-            "PFV is not known for the worst of these pieces: the panel {methods} shows the largest chance that any PFV "
-            "gives.",
-            methods=switching,
-        )
+        yield _("PFV is not known for the worst of these pieces: the panel {methods} shows the largest chance that any "
+                "PFV gives.", methods=switching)  # fmt: skip
         return
     motion = pieces[0].governing.motion
     yield _(
@@ -218,9 +206,8 @@ def _describe(
         ratio=(motion.pfv_cm_s or 0.0) / motion.pfa_g, floor=motion.floor, axis=motion.axis, methods=_name(by_velocity),
     )  # fmt: skip
     if switching:
-        yield _(
-            "Where a method changes from PFA to PFV, it jumps, which shows as a step: {methods}.", methods=switching
-        )
+        yield _("Where a method changes from PFA to PFV, it jumps, which shows as a step: {methods}.",
+                methods=switching)  # fmt: skip
 
 
 def _paint(
