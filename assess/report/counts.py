@@ -19,10 +19,9 @@ class Counts:
 
     Classes never mix bases: `by_class` are the simulated pieces, or those by formula in a run that simulated nothing.
     `unconfirmed` and `by_formula` (not simulated in a run that simulated others) are counted apart. Of those with a
-    class, `lowered` were lowered by simulation, `may_be` could be of a higher one, and `cannot_rock` are low as they
-    cannot rock. `spans` tells of each class how many are of it whatever the sampling intervals, and how many could be,
-    `risky_span` of high and very high together. `expected` is the expected number of them that fall, `falls_low` and
-    `falls_high` what 5 and 95 % of the draws do not exceed, None without draws.
+    class, `may_be` could be of a higher one. `spans` tells of each class how many are of it whatever the sampling
+    intervals, and how many could be, `risky_span` of high and very high together. `expected` is the expected number of
+    them that fall, `falls_low` and `falls_high` what 5 and 95 % of the draws do not exceed, None without draws.
     """
 
     label: str
@@ -77,9 +76,7 @@ class Counts:
     def falls(self) -> str:
         """The expected falls, and up to how many unconfirmed pieces besides."""
         expected = words.say_falls(self.expected, self.falls_low, self.falls_high)
-        if not self.unconfirmed:
-            return expected
-        return _("{expected} and up to {n:,}", expected=expected, n=self.unconfirmed)
+        return _("{expected} and up to {n:,}", expected=expected, n=self.unconfirmed) if self.unconfirmed else expected
 
     def say(self, risk: RiskClass) -> str:
         """Return the number of a class for a table, as a range where intervals span a limit: ``7–12``."""
@@ -98,20 +95,16 @@ def count(label: str, results: Iterable[ItemResult]) -> Counts:
     main = groups[""]
     low, high = find_ends(sum_falls(main))
     return Counts(
-        label,
-        {risk: count_pieces(one for one in main if one.adopted.risk == risk) for risk in RiskClass},
-        anchored=count_pieces(groups["anchored"]),
-        unconfirmed=count_pieces(groups["unconfirmed"]),
+        label, {risk: count_pieces(one for one in main if one.adopted.risk == risk) for risk in RiskClass},
+        anchored=count_pieces(groups["anchored"]), unconfirmed=count_pieces(groups["unconfirmed"]),
         by_formula=count_pieces(groups["formula"]),
         lowered=count_pieces(one for one in main if one.adopted.lowered_from is not None),
         may_be=count_pieces(one for one in main if words.find_highest(one) != one.adopted.risk),
         cannot_rock=count_pieces(one for one in main if not one.adopted.can_rock),
-        expected=sum(one.adopted.probability * one.item.quantity for one in main),
-        falls_low=low,
-        falls_high=high,
+        expected=sum(one.adopted.probability * one.item.quantity for one in main), falls_low=low, falls_high=high,
         spans={risk: _find_span(main, risk, risk) for risk in RiskClass},
         risky_span=_find_span(main, RiskClass.HIGH, RiskClass.VERY_HIGH),
-    )
+    )  # fmt: skip
 
 
 def _find_span(results: Sequence[ItemResult], first: RiskClass, last: RiskClass) -> Span:

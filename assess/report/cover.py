@@ -30,47 +30,33 @@ def build_document(view: View) -> Document:
     title = (_("Furniture in earthquakes: {building}, annex", building=named) if view.edition == "annex"
              else _("Furniture in earthquakes: {building}", building=named))  # fmt: skip
     return Document(
-        title=title,
-        cover=_build_cover(view),
-        sections=sections,
+        title=title, cover=_build_cover(view), sections=sections,
         author=", ".join(filter(None, (building.prepared_by, building.organisation))),
         description=_("Overturning of furniture in an earthquake: assessment"),
         keywords=_("earthquake, furniture, overturning, rocking, floor acceleration"),
-        conditions=" · ".join(list_conditions(view.run)),
-        kind=view.edition,
+        conditions=" · ".join(list_conditions(view.run)), kind=view.edition,
         contents=None if view.for_print else build_contents(view),
-    )
+    )  # fmt: skip
 
 
 def _build_cover(view: View) -> list[Block]:
     content, building = view.content, view.run.building
+    footer, conditions = content.verified.footer, " · ".join(list_conditions(view.run))
     if view.edition == "annex":
-        text = _(
-            "Every piece, the comparison of the methods, the simulation and its motions, the equations, the log of the "
-            "input and the references. The summary, what to fix and the plans are in the report of the same date: "
-            "{date}.",
-            date=content.date,
-        )
-        return [
-            Paragraph(_("Overturning of furniture in an earthquake: annex to the assessment"), "kind"),
-            _title(
-                view,
-                _("{building}: annex", building=words.cut(content.title, 110)),
-                _("{building}, annex", building=words.cut(content.title, 50)),
-            ),
-            Paragraph(text),
-            build_contents(view),
-        ]
+        title = _("{building}: annex", building=words.cut(content.title, 110))
+        short = _("{building}, annex", building=words.cut(content.title, 50))
+        text = _("Every piece, the comparison of the methods, the simulation and its motions, the equations, the log "
+                 "of the input and the references. The summary, what to fix and the plans are in the report of the "
+                 "same date: {date}.", date=content.date)  # fmt: skip
+        kind = Paragraph(_("Overturning of furniture in an earthquake: annex to the assessment"), "kind")
+        return [kind, Title(title, short, footer, conditions), Paragraph(text), build_contents(view)]
     blocks: list[Block] = []
-    logo = embed_logo(view.run)
-    if logo:
+    if logo := embed_logo(view.run):
         named = (_("Logo of {organisation}", organisation=building.organisation) if building.organisation
                  else _("Logo of the organisation"))  # fmt: skip
         blocks.append(Paragraph(Image(logo, named, "logo"), "mark"))
-    blocks += [
-        Paragraph(_("Overturning of furniture in an earthquake: assessment"), "kind"),
-        _title(view, words.cut(content.title, 120), words.cut(content.title, 60)),
-    ]
+    blocks.append(Paragraph(_("Overturning of furniture in an earthquake: assessment"), "kind"))
+    blocks.append(Title(words.cut(content.title, 120), words.cut(content.title, 60), footer, conditions))
     if building.scenario:
         blocks.append(Paragraph(_("Scenario: {scenario}", scenario=words.clip(building.scenario, 300)), "scenario"))
     if shaking := say_ground_source(view.run):
@@ -83,11 +69,6 @@ def _build_cover(view: View) -> list[Block]:
     status, why = content.verified.status
     links: Runs = [Span(_("Contents"), href="#contents"), " · ", Span(_("About this report"), href="#about")]
     return [*blocks, Paragraph([*links, f" · {content.date} · ", strong(status), f": {why}"], "small")]
-
-
-def _title(view: View, title: str, short: str) -> Title:
-    verified = view.content.verified
-    return Title(title, short, verified.footer, " · ".join(list_conditions(view.run)))
 
 
 def build_contents(view: View) -> Contents:

@@ -35,11 +35,8 @@ class Photos:
 
     def first_photo(self, results: Iterable[ItemResult]) -> tuple[str, str] | None:
         """Return the name of the first of some pieces that has a photo, and its address; None where none has one."""
-        for one in results:
-            photo = self.photo_of(one.item.index)
-            if photo:
-                return one.item.item, photo
-        return None
+        shown = ((one.item.item, self.photo_of(one.item.index)) for one in results)
+        return next((pair for pair in shown if pair[1]), None)
 
     def photo_of(self, item_index: int) -> str:
         """Return the address of the photo of a piece, by its `ItemRow.index`.

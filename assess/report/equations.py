@@ -38,8 +38,7 @@ _GREEK = {
     "θ": r"\theta", "λ": r"\lambda", "μ": r"\mu", "π": r"\pi", "ρ": r"\rho", "σ": r"\sigma", "ω": r"\omega",
     "Φ": r"\Phi",
 }  # fmt: skip
-_RELATIONS = {"≤": r"\leq", "≥": r"\geq"}
-_SIGNS = {"−": "-", "±": r"\pm"}
+_SIGNS = {"−": "-", "±": r"\pm", "≤": r"\leq", "≥": r"\geq"}
 _LOWER, _UPPER = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789"), str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
 _NAME = re.compile(
     r"(?P<base>B/H|PFV(?=50)|[A-Z]{2,}|.)(?P<index>50|_[A-Za-z0-9α-ω]+|[₀-₉]+)?(?P<star>[*]?)(?P<primes>[′″]*)"
@@ -92,10 +91,13 @@ def write_tex(equation: str) -> str:
     Raises NotationError if it is not written in the notation of this module.
     """
     parser = _Parser([one for one in _TOKEN.finditer(equation) if one.lastgroup != "space"])
-    found = parser.relations()
+    parts = list[str]()
+    while not parts or parser.kind == "relation":
+        parts += [parser.take("relation")] if parser.kind == "relation" else []
+        parts.append(parser.sum())
     if parser.kind:
         raise NotationError(parser.text)
-    return found
+    return " ".join(parts)
 
 
 # ---------------------------------------------------------------- where the equations of a line are
@@ -170,27 +172,14 @@ class _Parser:
         if self.kind != kind:
             raise NotationError(text or "the end")
         self.at += 1
-        return text
-
-    def relations(self) -> str:
-        parts = list[str]()
-        while not parts or self.kind == "relation":
-            if self.kind == "relation":
-                sign = self.take("relation")
-                parts.append(_RELATIONS.get(sign, sign))
-            parts.append(self.sum())
-        return " ".join(parts)
+        return _SIGNS.get(text, text)
 
     def sum(self) -> str:
         parts = list[str]()
         while not parts or self.is_operator("+-−±"):
-            parts += [self.sign()] if self.is_operator("+-−±") else []
+            parts += [self.take("operator")] if self.is_operator("+-−±") else []
             parts.append(self.product())
         return " ".join(parts)
-
-    def sign(self) -> str:
-        sign = self.take("operator")
-        return _SIGNS.get(sign, sign)
 
     def product(self) -> str:
         """Read factors; what stands before a stroke is the numerator, a second stroke adds to the denominator."""
@@ -234,7 +223,7 @@ class _Parser:
         found = self.atom() + self.power()
         if self.is_operator("^"):
             self.at += 1
-            sign = self.sign() if self.is_operator("+-−±") else ""
+            sign = self.take("operator") if self.is_operator("+-−±") else ""
             found += "^{" + sign + _bare(self.atom()) + "}"
         return found
 

@@ -1,6 +1,6 @@
 """Blocks as HTML: every text escaped, words that are too long for a column given places to break at."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from urllib.parse import quote
 
 from markupsafe import escape
@@ -91,54 +91,50 @@ class HtmlWriter:
     # ------------------------------------------------------------ tables
 
     def _table(self, one: blocks.Table) -> str:
-        caption = f"<caption>{self.words(one.caption)}</caption>\n" if one.caption else ""
-        columns = "".join(f"<col{_attributes(kind=column.width)}>" for column in one.columns)
         labels = [escape(" ".join(blocks.plain_words(column.heading).split())) for column in one.columns]
-        heads = "".join(
-            f'<th scope="col"{_attributes(kind=_kind(column, column.kind))}>{self.words(column.heading)}</th>'
-            for column in one.columns
-        )
-        bodies = "".join(
-            f"<tbody>\n{''.join(self._row(row, one, labels) for row in rows)}</tbody>\n" for rows in one.groups
-        )
-        thead = f"<thead><tr>{heads}</tr></thead>\n" if any(labels) else ""
-        attributes = _attributes(id=one.id, kind=one.kind)
-        return f"<table{attributes}>\n{caption}<colgroup>{columns}</colgroup>\n{thead}{bodies}</table>"
-
-    def _row(self, row: blocks.Row, table: blocks.Table, labels: Sequence[str]) -> str:
-        data = "".join(f' data-{name}="{escape(value)}"' for name, value in row.data.items())
-        write, columns = self._cell_words if table.is_named else self.words, table.columns
-        cells, has_labels = [], table.is_cards and not self.for_print
-        for at, cell in row.place_cells():
-            span = f' colspan="{cell.columns}"' if cell.columns > 1 else ""
-            if cell.is_head:
-                scope = "rowgroup" if row.kind == "part" else "row"
-                cells.append(f'<th scope="{scope}"{span}>{write(cell.words)}</th>')
-            else:
-                kind = _kind(columns[at], cell.kind) if cell.columns == 1 else cell.kind
-                sort = f' data-value="{escape(cell.sort)}"' if cell.sort is not None else ""
-                label = f' data-label="{labels[at]}"' if labels[at] and has_labels else ""
-                cells.append(f"<td{_attributes(kind=kind)}{span}{sort}{label}>{write(cell.words)}</td>")
-        return f"<tr{_attributes(id=row.id, kind=row.kind)}{data}>{''.join(cells)}</tr>\n"
+        has_labels = one.is_cards and not self.for_print
+        parts = [f"<table{_attributes(id=one.id, kind=one.kind)}>\n"]
+        parts += [f"<caption>{self.words(one.caption)}</caption>\n"] if one.caption else []
+        parts += ["<colgroup>", *(f"<col{_attributes(kind=each.width)}>" for each in one.columns), "</colgroup>\n"]
+        if any(labels):
+            parts.append("<thead><tr>")
+            for column in one.columns:
+                kind = _attributes(kind=_kind(column, column.kind))
+                parts.append(f'<th scope="col"{kind}>{self.words(column.heading)}</th>')
+            parts.append("</tr></thead>\n")
+        for rows in one.groups:
+            parts.append("<tbody>\n")
+            for row in rows:
+                data = "".join(f' data-{name}="{escape(value)}"' for name, value in row.data.items())
+                parts.append(f"<tr{_attributes(id=row.id, kind=row.kind)}{data}>")
+                for at, cell in row.place_cells():
+                    words = self.words(cell.words, is_broken=one.is_named)
+                    span = f' colspan="{cell.columns}"' if cell.columns > 1 else ""
+                    if cell.is_head:
+                        scope = "rowgroup" if row.kind == "part" else "row"
+                        parts.append(f'<th scope="{scope}"{span}>{words}</th>')
+                    else:
+                        kind = _kind(one.columns[at], cell.kind) if cell.columns == 1 else cell.kind
+                        sort = f' data-value="{escape(cell.sort)}"' if cell.sort is not None else ""
+                        label = f' data-label="{labels[at]}"' if labels[at] and has_labels else ""
+                        parts.append(f"<td{_attributes(kind=kind)}{span}{sort}{label}>{words}</td>")
+                parts.append("</tr>\n")
+            parts.append("</tbody>\n")
+        return "".join((*parts, "</table>"))
 
     # ------------------------------------------------------------ on a line
 
-    def _cell_words(self, words: blocks.Words) -> str:
-        """Return the words of a cell, the long ones with places to break at."""
+    def words(self, words: blocks.Words, *, is_broken: bool = False) -> str:
+        """Return what stands on a line, if `is_broken` with places to break long words at."""
         if isinstance(words, str):
-            return str(break_words(words)) if len(words) > LONGEST_WORD else str(escape(words))
+            return str(break_words(words) if is_broken and len(words) > LONGEST_WORD else escape(words))
         return "".join(
-            self._cell_words(one) if isinstance(one, str) else self._inline(one) for one in blocks.list_words(words)
+            self.words(one, is_broken=is_broken) if isinstance(one, str) else self._inline(one)
+            for one in blocks.list_words(words)
         )
 
-    def words(self, words: blocks.Words) -> str:
-        """Return what stands on a line."""
-        return str(escape(words)) if isinstance(words, str) else "".join(map(self._inline, blocks.list_words(words)))
-
-    def _inline(self, one: blocks.Inline) -> str:
+    def _inline(self, one: blocks.Span | blocks.Image | blocks.Equation) -> str:
         match one:
-            case str():
-                return str(escape(one))
             case blocks.Span(_, "break"):
                 return "<br>"
             case blocks.Span(words, kind, href, title):

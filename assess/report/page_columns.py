@@ -65,14 +65,12 @@ class PageColumn:
 
     def cell(self, one: Any, *, can_sort: bool = False) -> Cell | Words:
         """Return the cell of a row."""
-        shown = self.text(one) if self.show is None else self.show(one)
+        shown = (self.show or self.text)(one)
         kind = "size" if self.key == "size" else "wraps" if self.is_wide and self.is_number else ""
-        sort = self.sort(one) if can_sort and self.sort else None
-        return (
-            Cell(shown, kind, sort="" if can_sort and self.sort and sort is None else sort)
-            if kind or can_sort
-            else shown
-        )
+        if not can_sort or self.sort is None:
+            return Cell(shown, kind) if kind or can_sort else shown
+        value = self.sort(one)
+        return Cell(shown, kind, sort="" if value is None else value)
 
 
 def build_table(columns: Sequence[PageColumn], rows: Iterable[Any], kind: str, caption: Words = "") -> Table:
@@ -87,10 +85,8 @@ _LENGTHS: Mapping[str, Callable[[float], str]] = {"m": words.in_m, "cm": words.i
 def of_field(field: Field, **more: Any) -> PageColumn:
     """Return the column of a field of the results; `more` are parameters of `PageColumn` that differ."""
     is_number = field.kind in NUMBERS
-    column = PageColumn(
-        field.key, field.short_heading(), lambda row: say_value(field, field.read(row)), is_number,
-        sort=field.read if is_number else None,
-    )  # fmt: skip
+    column = PageColumn(field.key, field.short_heading(), lambda row: say_value(field, field.read(row)), is_number,
+                        sort=field.read if is_number else None)  # fmt: skip
     return replace(column, **more)
 
 
@@ -196,20 +192,17 @@ def short_columns(results: Results, *keys: str) -> tuple[PageColumn, ...]:
     """Return columns of pieces by key for a table with little room."""
     known = {one.key: one for one in list_columns(results, "risky")}
     longest = 28 if "place" in keys else 40
-    known["piece"] = PageColumn(
-        "piece", _("Piece"), lambda one: f"{words.cut(one.item.item, 14)}: {describe(one, longest)}"
-    )
+    known["piece"] = PageColumn("piece", _("Piece"),
+                                lambda one: f"{words.cut(one.item.item, 14)}: {describe(one, longest)}")  # fmt: skip
     known["place"] = PageColumn(
-        "place",
-        _("Floor, room"),
+        "place", _("Floor, room"),
         lambda one: ", ".join(filter(None, (words.cut(one.item.floor, 8), words.cut(one.item.room, 18)))),
-    )
+    )  # fmt: skip
     known["formula"] = PageColumn("formula", _("By formula"), _say_formula)
     known["chance"] = replace(known["adopted_probability"], key="chance", heading=_("Chance (interval)"))
     known["room_short"] = replace(known["room"], text=lambda one: words.cut(one.item.room, 14))
-    known["ideal"] = PageColumn(
-        "ideal", _("If exactly this motion recurred"), words.ideal_chance, is_number=True, is_wide=True
-    )
+    known["ideal"] = PageColumn("ideal", _("If exactly this motion recurred"), words.ideal_chance,
+                                is_number=True, is_wide=True)  # fmt: skip
     known["class"] = replace(known["adopted_class"], key="class", show=mark)
     return tuple(known[key] for key in keys)
 
@@ -250,16 +243,11 @@ def _of_method(column: PageColumn, where: Where, method: "MethodInfo") -> PageCo
     name = method.short_title if where == "pieces" else method.title
     title = _(name)
     return replace(
-        column,
-        heading=_("{title} (raw)", title=title) if raw else title,
-        text=text,
-        line=lambda one: say(one.governing.methods[method.key].value),
-        line_heading=title,
-        is_number=is_chance,
+        column, heading=_("{title} (raw)", title=title) if raw else title, text=text,
+        line=lambda one: say(one.governing.methods[method.key].value), line_heading=title, is_number=is_chance,
         places=7 if where == "pieces" else max(map(len, map(_, method.words))) if any(method.words) else 17,
-        is_wide=raw is not None,
-        is_method=True,
-    )
+        is_wide=raw is not None, is_method=True,
+    )  # fmt: skip
 
 
 def has_worse_motion(one: ItemResult, key: str) -> bool:
@@ -314,11 +302,10 @@ DOUBTFUL = frozenset(("unknown_segments", "unknown_routes", "unknown_rooms"))
 def route_columns(*, has_anchors: bool, has_unknown: bool = False) -> dict[str, tuple[PageColumn, ...]]:
     """Return the columns of every table on evacuation routes; the captions give the unit of widths."""
     left_out = (frozenset() if has_anchors else ANCHORS) | (frozenset() if has_unknown else DOUBTFUL)
-    tables = {}
-    for name, (row, keys) in ROUTE_TABLES.items():
-        found = [route_fields(row)[key] for key in keys if key not in left_out]
-        tables[name] = tuple(
+    return {
+        name: tuple(
             of_field(one, heading=_(one.short or one.label), is_number=one.kind in NUMBERS and one.key not in SENTENCES)
-            for one in found
+            for one in (route_fields(row)[key] for key in keys if key not in left_out)
         )
-    return tables
+        for name, (row, keys) in ROUTE_TABLES.items()
+    }

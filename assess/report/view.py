@@ -77,7 +77,7 @@ class View:
         """Tell whether a section is shown."""
         return any(part.key == key for part in self.parts)
 
-    @cached_property
+    @property
     def marks(self) -> str:
         """The legend of the marks as a sentence, "" where nothing was simulated."""
         return f"{words.marks()}." if self.content.verified.done else ""
@@ -99,20 +99,18 @@ class View:
         """The plans by floor, None of one without a position; none in an edition that has no floors."""
         if not self.shows("floors"):
             return {}
-        stretches = build_stretches(self.run.route_tables)
-        return {
-            page.floor.floor: self.once(
-                f"plan {page.floor.floor}",
-                partial(build_plan, page, self.run, stretches.get(page.floor.floor, ())),
-            )
-            for page in self.progress.checked(self.content.shown_floors)
-        }
+        stretches, plans = build_stretches(self.run.route_tables), dict[str, Plan | None]()
+        for page in self.progress.checked(self.content.shown_floors):
+            name = page.floor.floor
+            plans[name] = self.once(f"plan {name}", partial(build_plan, page, self.run, stretches.get(name, ())))
+        return plans
 
     @cached_property
     def shown_segments(self) -> Sequence[tuple[int, SegmentRow]]:
         """The segments that are listed, with their numbers from 1."""
-        found = self.run.route_tables
-        return list_segments(found, MOST_SEGMENTS, is_short=self.for_print) if self.run.has_routes else ()
+        if not self.run.has_routes:
+            return ()
+        return list_segments(self.run.route_tables, MOST_SEGMENTS, is_short=self.for_print)
 
     @cached_property
     def floor_titles(self) -> Mapping[str, str]:
@@ -180,10 +178,8 @@ def say_left(left: int, *, is_likely: bool = False) -> list[Block]:
     """Return a line on how many rows only the Excel report has, if any; `is_likely`: the likeliest are shown."""
     if left <= 0:
         return []
-    text = (
-        ngettext("{n:,} more, less likely, is in the Excel report.",
-                 "{n:,} more, less likely, are in the Excel report.", left)
-        if is_likely else
-        ngettext("{n:,} more is in the Excel report.", "{n:,} more are in the Excel report.", left)
-    )  # fmt: skip
+    text = ngettext("{n:,} more is in the Excel report.", "{n:,} more are in the Excel report.", left)
+    if is_likely:
+        text = ngettext("{n:,} more, less likely, is in the Excel report.",
+                        "{n:,} more, less likely, are in the Excel report.", left)  # fmt: skip
     return [Paragraph(text, "small")]

@@ -52,7 +52,15 @@ def draw(
         for one in figure.findobj(Text):
             if missing := find_undrawn(one.get_text()):
                 one.set_text(replace_signs(one.get_text(), missing))
-        _write_numbers(figure)
+        say = spoken().number
+        if say("1.5") != "1.5":  # along axes, but for ticks with words; those that share a scale share its formatter
+            from matplotlib.ticker import LogFormatter, ScalarFormatter
+
+            formatters = [axis.get_major_formatter() for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)]
+            numbers = [one for one in formatters if isinstance(one, (ScalarFormatter, LogFormatter))]
+            numeric: dict[int, Any] = {id(one): one for one in numbers}
+            for shared in numeric.values():
+                shared.format_ticks = lambda values, ticks=shared.format_ticks: [say(text) for text in ticks(values)]
         file = BytesIO()
         figure.savefig(file, format=kind, dpi=150, metadata=dict.fromkeys(_UNDATED[kind]))
     progress.check()
@@ -83,20 +91,6 @@ def one_at_a_time(progress: Progress) -> Iterator[None]:
         yield
     finally:
         _DRAWING.release()
-
-
-def _write_numbers(figure: Any) -> None:
-    """Have numbers along axes written as the language in use does; ticks with words are as they were set."""
-    from matplotlib.ticker import LogFormatter, ScalarFormatter
-
-    say = spoken().number
-    if say("1.5") == "1.5":
-        return
-
-    formatters = [axis.get_major_formatter() for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)]
-    numeric: dict[int, Any] = {id(one): one for one in formatters if isinstance(one, (ScalarFormatter, LogFormatter))}
-    for formatter in numeric.values():  # axes that share a scale share its formatter
-        formatter.format_ticks = lambda values, ticks=formatter.format_ticks: [say(text) for text in ticks(values)]
 
 
 def build_figure(drawing: bytes, alternative: str, caption: Words = "") -> Figure:

@@ -75,13 +75,9 @@ def write_html(content: Content, path: Path, options: ReportOptions, progress: P
 
 
 def render(
-    content: Content,
-    options: ReportOptions | None = None,
-    *,
-    for_print: bool = False,
-    edition: Edition = "all",
+    content: Content, options: ReportOptions | None = None, *, for_print: bool = False, edition: Edition = "all",
     progress: Progress = SILENT,
-) -> str:
+) -> str:  # fmt: skip
     """Return the report as HTML in the language in use (see `ReportOptions.spoken`).
 
     `for_print` takes the style of the page and the embedded fonts of the PDF, and leaves the script out; `edition`
@@ -100,22 +96,15 @@ def render(
     filters += [("apart-unconfirmed", apart_label("unconfirmed"))] if total.unconfirmed else []
     filters += [("apart-formula", apart_label("formula"))] if total.by_formula else []
     filters += [("anchored", _("anchored"))]
-    return render_document(
-        document, options, script=options.read(SCRIPT), filters=filters if content.results else (), progress=progress
-    )
+    filters = filters if content.results else []
+    return render_document(document, options, script=options.read(SCRIPT), filters=filters, progress=progress)
 
 
 def render_document(
-    document: Document,
-    options: ReportOptions,
-    *styles: str,
-    for_print: bool = False,
-    script: str = "",
-    filters: Sequence[tuple[str, str]] = (),
-    template: str = "page.html.j2",
-    more: Mapping[str, Any] | None = None,
+    document: Document, options: ReportOptions, *styles: str, for_print: bool = False, script: str = "",
+    filters: Sequence[tuple[str, str]] = (), template: str = "page.html.j2", more: Mapping[str, Any] | None = None,
     progress: Progress = SILENT,
-) -> str:
+) -> str:  # fmt: skip
     """Return a document as HTML with `styles` besides those of every page; raises what `render` does.
 
     A `template` of its own shows the `Page`, and `more` by name.
@@ -126,21 +115,14 @@ def render_document(
         return Markup(text)  # noqa: S704 - written by this program, which escapes every text
 
     page = Page(
-        document=document,
-        language=options.spoken_language,
-        for_print=for_print,
-        style=as_html(build_style(options, for_print, *styles)),
-        script=as_html(script),
-        script_hash=hash_script(script),
-        cover=as_html(writer.write_blocks(document.cover)),
-        sections=[
-            PageSection(id=one.id, heading=one.heading, html=as_html(writer.section(one)))
-            for one in progress.checked(document.sections)
-        ],
+        document=document, language=options.spoken_language, for_print=for_print, filters=filters,
+        style=as_html(build_style(options, for_print, *styles)), script=as_html(script),
+        script_hash=hash_script(script), cover=as_html(writer.write_blocks(document.cover)),
+        sections=[PageSection(id=one.id, heading=one.heading, html=as_html(writer.section(one)))
+                  for one in progress.checked(document.sections)],
         contents=as_html(writer.write_blocks([document.contents]) if document.contents else ""),
-        filters=filters,
         outlines=as_html(writer.outlines()),
-    )
+    )  # fmt: skip
     return render_template(template, options, {"page": page, **(more or {})}, progress)
 
 
