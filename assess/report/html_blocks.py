@@ -175,13 +175,6 @@ class HtmlWriter:
             f'style="{escape(drawn.style)}">{drawn.placed}</svg>'
         )
 
-    def outlines(self) -> str:
-        """Return the outlines of the letters of the equations, which a page for a screen holds once."""
-        if not self.letters:
-            return ""
-        hidden = 'width="0" height="0" aria-hidden="true" style="position: absolute"'
-        return f"<svg {hidden}>{write_letters(self.letters)}</svg>"
-
 
 def _attributes(*, id: str = "", kind: str = "") -> str:  # noqa: A002 - as HTML calls it
     return (f' id="{escape(id)}"' if id else "") + (f' class="{escape(kind)}"' if kind else "")

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from assess.methods import MethodInfo
 
 NUMBERS = ("number", "count", "share")
-LONGEST: Mapping[str, int] = {"floor": 20}
-"""Characters of a text in a table, by key; of others 40."""
 COMPACT: Mapping[str, int] = {
     "item": 12, "floor": 6, "room": 14, "description": 30, "quantity": 5, "breadth_to_height": 6,
     "axis": 5, "pfa_g": 7, "pfv_cm_s": 10,
@@ -108,7 +106,7 @@ def say_value(field: Field, value: Any) -> str:
         value = ", ".join(_(str(one)) for one in value)
     elif field.choices or field.kind == "class":
         value = value if "axis" in field.key else _(value)
-    return words.cut(str(value), LONGEST.get(field.key, 40))
+    return words.cut(str(value), 20 if field.key == "floor" else 40)
 
 
 # ---------------------------------------------------------------- signs

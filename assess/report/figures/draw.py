@@ -1,10 +1,12 @@
 """The report's figures, as SVG with their text as outlines: they look the same wherever they are opened."""
 
+import importlib
 import math
 import re
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from io import BytesIO
 from typing import Any
 
@@ -21,7 +23,7 @@ from assess.risk import RiskClass
 MOST_POINTS = 1500
 _UNDATED = {"svg": ("Date", "Creator"), "pdf": ("CreationDate", "Creator", "Producer"), "png": ("Software",)}
 """What is left out of each kind of file, so that the same figure has the same bytes."""
-_STYLE = {
+_STYLE: dict[Any, Any] = {
     "svg.hashsalt": "assess", "svg.fonttype": "path", "hatch.linewidth": 0.5,
     "font.size": 8, "axes.titlesize": 8.5, "axes.labelsize": 8, "axes.edgecolor": "#767c82", "axes.linewidth": 0.6,
     "axes.spines.top": False, "axes.spines.right": False, "xtick.color": "#767c82", "ytick.color": "#767c82",
@@ -44,12 +46,15 @@ def draw(
     It can be cancelled with whatever is put into it, and before each panel is laid out and drawn. It is not made in a
     thread that is left behind, as the defaults of matplotlib have to be set back by then.
     """
-    MatplotlibFigure, Text, rc_context = progress.wait_for(_import_matplotlib)
-    with one_at_a_time(progress), rc_context({**_STYLE, "font.family": list(figure_families())}):
-        figure = MatplotlibFigure(figsize=(width, height), layout="constrained")
+    for name in ("font_manager", "backends.backend_svg", "figure"):  # its fonts are listed, what writes SVG is loaded
+        progress.wait_for(partial(importlib.import_module, f"matplotlib.{name}"))
+    import matplotlib as mpl
+
+    with one_at_a_time(progress), mpl.rc_context({**_STYLE, "font.family": list(figure_families())}):
+        figure = mpl.figure.Figure(figsize=(width, height), layout="constrained")
         figure.stale_callback = lambda *_: progress.check()  # called with whatever is put into it
         paint(figure)
-        for one in figure.findobj(Text):
+        for one in figure.findobj(mpl.text.Text):
             if missing := find_undrawn(one.get_text()):
                 one.set_text(replace_signs(one.get_text(), missing))
         say = spoken().number
@@ -68,18 +73,6 @@ def draw(
     if kind == "svg":  # paths to hundredths of a point, beyond which nobody sees: curves take half the bytes
         drawn = _PATH.sub(lambda path: _DIGITS.sub(rb"\1", path[0]), drawn)
     return drawn
-
-
-def _import_matplotlib() -> tuple[Any, Any, Any]:
-    """Return what figures are drawn with; its fonts are listed, and what writes SVG is loaded."""
-    import matplotlib as mpl
-    from matplotlib import font_manager
-    from matplotlib.backends import backend_svg
-    from matplotlib.figure import Figure
-    from matplotlib.text import Text
-
-    _ = font_manager, backend_svg
-    return Figure, Text, mpl.rc_context
 
 
 @contextmanager

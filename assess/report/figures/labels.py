@@ -35,7 +35,7 @@ class Label:
 def _lead(box: Bounds, piece: Bounds) -> tuple[Point, Point]:
     """Return the points of the label and of the piece that lie nearest to each other, the middle where they overlap."""
     ends = []
-    for low, high, other_low, other_high in ((box[at], box[at + 2], piece[at], piece[at + 2]) for at in (0, 1)):
+    for low, high, other_low, other_high in zip(box[:2], box[2:], piece[:2], piece[2:], strict=True):
         middle = (max(low, other_low) + min(high, other_high)) / 2
         ends.append((high, other_low) if high < other_low else (low, other_high) if low > other_high else (middle,) * 2)
     return (ends[0][0], ends[1][0]), (ends[0][1], ends[1][1])
@@ -114,21 +114,20 @@ class Names:
 
     def __init__(self, frame: Bounds, unit: float, pieces: Sequence[Bounds] = ()) -> None:
         self.frame, self.unit = frame, unit
-        self.boxes: list[Bounds] = []
-        self.pieces: tuple[Bounds, ...] = tuple(pieces)
+        self.held = list(pieces)
         self.keys: list[Key] = []
 
     def place(self, named: Sequence[tuple[str, Bounds]], taken: Sequence[Bounds]) -> list[Label | None]:
         """Return the label of each name, a number in its place, or None."""
-        found = self._place_each(named, taken, (*self.boxes, *self.pieces))
-        self.boxes += [one.box for one in found if one is not None]
+        found = self._place_each(named, taken, self.held)
+        self.held += [one.box for one in found if one is not None]
         for at, (text, box) in enumerate(named):
             if found[at] is None:
                 number = sum(key.number is not None for key in self.keys) + 1
-                (label,) = self._place_each([(str(number), box)], taken, (*self.boxes, *self.pieces))
+                (label,) = self._place_each([(str(number), box)], taken, self.held)
                 point = ((box[0] + box[2]) / 2, (box[1] + box[3]) / 2)
                 self.keys.append(Key(None if label is None else number, text, point))
-                self.boxes += [] if label is None else [label.box]
+                self.held += [] if label is None else [label.box]
                 found[at] = label
         return found
 
@@ -143,10 +142,10 @@ class Names:
         free = [*taken, *signs]
         labels = self.place(named[: ranks.count(0)], free)
         for name in named[ranks.count(0) : len(ranks) - ranks.count(3)]:  # left out unless it covers nothing
-            (label,) = self._place_each([name], free, (*self.boxes, *self.pieces))
+            (label,) = self._place_each([name], free, self.held)
             is_free = label is not None and label.lead is None and not any(overlap(label.box, box) for box in free)
             labels.append(label if is_free else None)
-            self.boxes += [label.box] if label is not None and is_free else []
+            self.held += [label.box] if label is not None and is_free else []
         labels += [None] * ranks.count(3)
         spots = []
         for (one, at), sign, label in zip(ordered, signs, labels, strict=True):
@@ -160,13 +159,13 @@ class Names:
 
     def place_ways(self, signed: Sequence[tuple[str, Bounds]]) -> list[Label]:
         """Return the names of segments beside their signs, where a name covers nothing else."""
-        taken = [*self.pieces, *self.boxes, *(box for _name, box in signed)]
+        taken = [*self.held, *(box for _name, box in signed)]
         small = LINE * LINE * self.unit * self.unit / 20
         return [
             one
             for one in self._place_each(signed[:MOST], taken, ())
             if one and one.lead is None and find_covered([one.box], taken)[0] < small
-            and not any(overlap(one.box, other) for other in (*self.boxes, *self.pieces))
+            and not any(overlap(one.box, other) for other in self.held)
         ]  # fmt: skip
 
     def _place_each(

@@ -81,17 +81,11 @@ class Traced:
     rotation: NDArray[np.float32]
 
     @property
-    def motion(self) -> MotionRow:
-        """The motion that governs it."""
-        return self.one.governing.motion
-
-    @property
     def name(self) -> str:
         """Its name, and how many are like it."""
         name = words.cut(self.one.item.item, 40)
-        if not self.alike:
-            return name
-        return ngettext("{name} (and {n:,} alike)", "{name} (and {n:,} alike)", self.alike, name=name)
+        alike = ngettext("{name} (and {n:,} alike)", "{name} (and {n:,} alike)", self.alike, name=name)
+        return alike if self.alike else name
 
 
 def choose_traced(results: Results, rows: Sequence[ItemResult]) -> list[Traced]:
@@ -150,12 +144,12 @@ def draw_traced(content: Content, progress: Progress = SILENT) -> Iterator[Figur
 
 
 def _draw_motions(results: Results, worst: Traced, progress: Progress) -> Figure:
-    floor, axis = words.cut(worst.motion.floor, 20), worst.motion.axis
-    series, motion = results.series, f"motion/{worst.motion.index}"
-    record = get_acceleration(results, worst.motion)
+    governing, series = worst.one.governing.motion, results.series
+    floor, axis, motion = words.cut(governing.floor, 20), governing.axis, f"motion/{governing.index}"
+    record = get_acceleration(results, governing)
     accelerations: list[Acceleration] = []
     if record is not None:
-        accelerations.append(("record", _("record"), record, worst.motion.time_step_s or 0.0))
+        accelerations.append(("record", _("record"), record, governing.time_step_s or 0.0))
     for at, step in enumerate(series[f"{motion}/example_steps_s"].tolist()):
         values = series[f"{motion}/example/{at}"].astype(np.float64)
         accelerations.append((f"motion-{at + 1}", _("motion {number}", number=at + 1), values, step))

@@ -14,7 +14,7 @@ from assess.report import words
 from assess.report.content import FloorPage
 from assess.report.figures.labels import MOST, NAMED, Bounds, Corners, Key, Label, Names, Point, Spot, bounds
 from assess.report.figures.underlay import Ring, Room, Underlay, build_underlay, cut_falls, find_edge, list_rooms, widen
-from assess.report.figures.ways import Stretch, Style, place_signs, sign_box
+from assess.report.figures.ways import Stretch, place_signs, sign_box
 from assess.results import ItemResult, ItemRow, Results
 from assess.risk import RiskClass
 from assess.routes.geometry import fallen, rectangle
@@ -31,21 +31,23 @@ BORDER = 0.4
 """Free space round everything that is drawn [m]."""
 SHORT = 12
 """Characters of a piece's name that are drawn."""
-KINDS = ("exit", "stair", "door", "room")
-"""Kinds of places, each with a sign of its own."""
 _STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
 _TICKS = 12
 
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """One piece; `number` is that of its row among all pieces, from 1, and `side` its shorter side [m]."""
+    """One piece; `number` is that of its row among all pieces, from 1, and `side` its shorter side [m].
+
+    `upper` is the class that it may reach; None where it stands outside the classes. `fallen` is what it would cover if
+    it fell, one rectangle a way: only for a free-standing one of at least medium class, and inside the building's edge
+    where that is known.
+    """
 
     number: int
     name: str
     title: str
     upper: RiskClass | None
-    """The class that it may reach; None where it stands outside the classes."""
     class_name: str
     fill: str
     ink: str
@@ -55,37 +57,34 @@ class Piece:
     at: Point
     corners: Corners
     fallen: tuple[Ring, ...]
-    """What it would cover if it fell, one rectangle a way: only for a free-standing one of at least medium class.
-
-    Where the building's edge is known, what of them lies inside."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """One floor's plan; `low` and `high` are the corners of what is drawn, `unit` [m] one pixel of the drawing."""
+    """One floor's plan; `low` and `high` are the corners of what is drawn, `unit` [m] one pixel of the drawing.
+
+    The ids of the drawing begin with `key`, as those of no other plan. `ways` are segments, those with most to warn of
+    first, and `names` their names; `keys` are names that are not drawn, with the numbers in their place. Falls are
+    drawn as far as `cut_at`: the outlines of the floor, the frame of the user's drawing, or "". `north` is its
+    direction [deg], anticlockwise from X, where it is known.
+    """
 
     key: str
-    """What the ids of the drawing begin with: no other plan of the report has the same."""
     title: str
     pieces: tuple[Piece, ...]
     places: tuple[Spot, ...]
     labels: tuple[Label, ...]
     ways: tuple[Stretch, ...]
-    """Segments, those with most to warn of first."""
     names: tuple[Label, ...]
-    """Names of segments."""
     rooms: tuple[Room, ...]
     room_names: tuple[Label, ...]
     keys: tuple[Key, ...]
-    """Names that are not drawn, with the numbers in their place."""
     underlay: Underlay | None
     cut_at: str
-    """What falls are drawn as far as: the outlines of the floor, the frame of the user's drawing, or nothing."""
     low: Point
     high: Point
     unit: float
     north: float | None
-    """Direction of north [deg], anticlockwise from X, where it is known."""
 
     @property
     def size(self) -> tuple[int, int]:
@@ -122,16 +121,6 @@ class Plan:
             return ""
         found = [part for line in self.underlay.lines for part in clip(line, (*self.low, *self.high))]
         return "".join("M" + "L".join(f"{self.x(x):.1f} {self.y(y):.1f}" for x, y in line.tolist()) for line in found)
-
-    @property
-    def styles(self) -> Sequence[Style]:
-        """How the states that occur are drawn, the worst first."""
-        return list(dict.fromkeys(one.style for one in self.ways))
-
-    @property
-    def kinds(self) -> Sequence[str]:
-        """Kinds of the places that have a sign of their own."""
-        return [kind for kind in KINDS if any(spot.kind == kind for spot in self.places)]
 
     @property
     def ticks(self) -> tuple[tuple[float, ...], ...]:
@@ -198,23 +187,12 @@ def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) 
     risky = [(one.name, bounds(one.corners)) for _upper, one in named[:MOST]]
     labels = [one for one in names.place(risky, taken) if one is not None]
     return Plan(
-        key=f"plan-{[floor.floor for floor in results.floor_rows].index(page.floor.floor) + 1}",
-        title=page.title,
-        pieces=pieces,
-        places=tuple(spots),
-        labels=tuple(labels),
-        ways=signed,
-        names=tuple(names.place_ways(signs)),
-        rooms=rooms,
-        room_names=tuple(room_names),
-        keys=tuple(names.keys),
-        underlay=underlay,
-        cut_at=edge[1] if edge else "",
-        low=frame[:2],
-        high=frame[2:],
-        unit=unit,
+        key=f"plan-{[floor.floor for floor in results.floor_rows].index(page.floor.floor) + 1}", title=page.title,
+        pieces=pieces, places=tuple(spots), labels=tuple(labels), ways=signed, names=tuple(names.place_ways(signs)),
+        rooms=rooms, room_names=tuple(room_names), keys=tuple(names.keys), underlay=underlay,
+        cut_at=edge[1] if edge else "", low=frame[:2], high=frame[2:], unit=unit,
         north=results.building.azimuth_deg,  # X lies as far clockwise from north as north anticlockwise from X
-    )
+    )  # fmt: skip
 
 
 def _build_piece(one: ItemResult, at: Point) -> Piece:
@@ -230,20 +208,14 @@ def _build_piece(one: ItemResult, at: Point) -> Piece:
     named, kind = words.cut(item.item, 40), item.description or item.type
     described = f"{named}, {words.cut(kind, 80)}" if kind else named
     return Piece(
-        number=item.index + 1,
-        name=words.cut(item.item, SHORT),
+        number=item.index + 1, name=words.cut(item.item, SHORT),
         upper=None if is_outside else max(risk, one.adopted.upper),
         title=_("{item}: {risk}; chance {chance}",
                 item=described, risk=words.risk_words(one), chance=words.chance(one)),
-        class_name=words.style_name(one),
+        class_name=words.style_name(one), ink=words.INK if is_outside else risk.ink,
         fill=ANCHORED if one.is_anchored else words.APART_FILL if one.apart else risk.fill,
-        ink=words.INK if is_outside else risk.ink,
-        symbol=words.class_symbol(one),
-        marks="" if is_outside else words.class_marks(one),
-        side=min(breadth, across),
-        at=at,
-        corners=rectangle(at, angle, (-breadth / 2, breadth / 2), across),
-        fallen=ways,
+        symbol=words.class_symbol(one), marks="" if is_outside else words.class_marks(one), side=min(breadth, across),
+        at=at, corners=rectangle(at, angle, (-breadth / 2, breadth / 2), across), fallen=ways,
     )  # fmt: skip
 
 

@@ -8,6 +8,9 @@ from assess.report.templates import open_template
 from assess.report.view import MOST_ROWS, View
 from assess.risk import RiskClass
 
+KINDS = ("exit", "stair", "door", "room")
+"""Kinds of places, each with a sign of its own."""
+
 
 def draw_plan(plan: Plan, view: View) -> Image:
     """Return the plan; on a screen its pieces and segments lead to their rows."""
@@ -30,8 +33,9 @@ def list_legend(plan: Plan, view: View) -> list[Block]:
     blocks: list[Block] = [Paragraph(join_words(badges), "small legend")]
     if plan.ways:
         signs = open_template("signs.svg.j2", view.options).module
-        ways = [(Image(str(signs.way_swatch(one))), one.words) for one in plan.styles]
-        ways += [(Image(str(signs.place_swatch(kind, _(kind)))), _(kind)) for kind in plan.kinds]
+        styles, there = dict.fromkeys(one.style for one in plan.ways), {spot.kind for spot in plan.places}
+        ways = [(Image(str(signs.way_swatch(one))), one.words) for one in styles]  # the worst state first
+        ways += [(Image(str(signs.place_swatch(kind, _(kind)))), _(kind)) for kind in KINDS if kind in there]
         blocks.append(
             Paragraph(join_words(Span([sign, f" {text}"], "key") for sign, text in ways), "small legend ways")
         )

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -110,15 +109,10 @@ def _write_texts(axes: Any, lines: Sequence[Line], places: Mapping[Point, Sequen
         name = label(ones[0].item.item, 14) + (f" +{len(ones) - 1}" if len(ones) > 1 else "")
         width = LETTER * len(name)
         aside, above = GAP + width / 2, GAP + LINE / 2
-        tried = [
-            box_around(centre, width, LINE)
-            for centre in ((x + aside, y), (x - aside, y), (x, y + above), (x, y - above))
-        ]
-        free = (
-            box for box in tried
-            if is_inside(box, (0.0, 0.0, *PANEL)) and not any(overlap(box, one) for one in taken)
-        )  # fmt: skip
-        box = next(free, None) if named < MOST_NAMES else None
+        around = ((x + aside, y), (x - aside, y), (x, y + above), (x, y - above))
+        tried = [box_around(centre, width, LINE) for centre in around if named < MOST_NAMES]
+        tried = [box for box in tried if is_inside(box, (0.0, 0.0, *PANEL))]
+        box = next((box for box in tried if not any(overlap(box, one) for one in taken)), None)
         if box is not None:
             offset = ((box[0] + box[2]) / 2 - x, (box[1] + box[3]) / 2 - y)
             axes.annotate(name, place, xytext=offset, textcoords="offset points", fontsize=7, ha="center", va="center",
@@ -141,9 +135,6 @@ def paint_legend(figure: Any, *, has_checked: bool = True) -> None:
 
 # ---------------------------------------------------------------- the figure of a report
 
-Panel = tuple["MethodInfo", FloatArray]
-"""A method and its chances on the grid [-], (a, b)."""
-
 
 def draw_contours(results: Results, progress: Progress = SILENT) -> Figure:
     """Draw what the series hold: the methods over breadth and PFA, and the free-standing pieces of about one height."""
@@ -154,18 +145,41 @@ def draw_contours(results: Results, progress: Progress = SILENT) -> Figure:
         (method, series[f"contours/{method.key}"]) for method in results.methods if f"contours/{method.key}" in series
     ]
     methods = [method for method, _risk in panels]
-    paint = partial(_paint, pieces, height, series["contours/breadth_cm"], series["contours/pfa_g"], panels)
-    drawn = draw(7, 3.6, paint, progress=progress)
+    breadth, pfa = series["contours/breadth_cm"], series["contours/pfa_g"]
+    places: dict[Point, list[ItemResult]] = {}  # at each the worst first
+    for one in pieces:
+        place = round(one.item.breadth_cm, 6), round(one.governing.motion.pfa_g, 6)
+        places.setdefault(place, []).append(one)
+
+    def paint(figure: Any) -> None:
+        drawn = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
+        for axes, (method, risk) in zip(drawn, panels, strict=True):
+            lines = paint_risk(axes, breadth, pfa, risk)
+            paint_checked(axes, method, height)
+            shown = dict.fromkeys((place, one.adopted.risk, one.apart) for place, own in places.items() for one in own)
+            for (x, y), own, apart in sorted(shown, key=lambda found: (not found[2], found[1])):  # the worst on top
+                marker, fill = (APART[apart], HALO) if apart else (MARKERS[own], own.fill)
+                axes.plot([x], [y], marker, color=HALO, markersize=7, zorder=5)
+                axes.plot([x], [y], marker, markersize=5, markerfacecolor=fill, markeredgecolor=INK,
+                          markeredgewidth=0.8, zorder=5)[0].set_gid("piece")  # fmt: skip
+            axes.set_xlim(*breadth[[0, -1]])
+            axes.set_ylim(*pfa[[0, -1]])
+            axes.set_title(_(method.title), fontsize=8, loc="left")
+            axes.set_xlabel(_("breadth [cm]"), fontsize=8)
+            axes.tick_params(labelsize=7)
+            _write_texts(axes, lines, places)
+        drawn[0].set_ylabel(_("PFA [g]"), fontsize=8)
+        paint_legend(figure)
+
     alternative = ngettext(
         "Maps of the chance of overturning over breadth and PFA for a height of {height:.0f} cm ({methods}), with "
         "{n:,} piece on them; its chance is in the table of all pieces",
         "Maps of the chance of overturning over breadth and PFA for a height of {height:.0f} cm ({methods}), with "
         "{n:,} pieces on them; their chances are in the table of all pieces",
-        count_pieces(pieces),
-        height=height,
-        methods=_name(methods),
-    )
-    return build_figure(drawn, alternative, " ".join(_describe(height, pieces, ratio, methods)))
+        count_pieces(pieces), height=height, methods=_name(methods),
+    )  # fmt: skip
+    drawing = draw(7, 3.6, paint, progress=progress)
+    return build_figure(drawing, alternative, " ".join(_describe(height, pieces, ratio, methods)))
 
 
 def _name(methods: Sequence["MethodInfo"]) -> str:
@@ -208,36 +222,3 @@ def _describe(
     if switching:
         yield _("Where a method changes from PFA to PFV, it jumps, which shows as a step: {methods}.",
                 methods=switching)  # fmt: skip
-
-
-def _paint(
-    pieces: Sequence[ItemResult],
-    height: float,
-    breadth: FloatArray,
-    pfa: FloatArray,
-    panels: Sequence[Panel],
-    figure: Any,
-) -> None:
-    """Paint a panel a method; the pieces at each place are the worst first."""
-    places: dict[Point, list[ItemResult]] = {}
-    for one in pieces:
-        place = round(one.item.breadth_cm, 6), round(one.governing.motion.pfa_g, 6)
-        places.setdefault(place, []).append(one)
-    drawn = figure.subplots(1, len(panels), sharex=True, sharey=True, squeeze=False)[0]
-    for axes, (method, risk) in zip(drawn, panels, strict=True):
-        lines = paint_risk(axes, breadth, pfa, risk)
-        paint_checked(axes, method, height)
-        shown = dict.fromkeys((place, one.adopted.risk, one.apart) for place, ones in places.items() for one in ones)
-        for (x, y), own, apart in sorted(shown, key=lambda found: (not found[2], found[1])):  # the worst on top
-            marker, fill = (APART[apart], HALO) if apart else (MARKERS[own], own.fill)
-            axes.plot([x], [y], marker, color=HALO, markersize=7, zorder=5)
-            axes.plot([x], [y], marker, markersize=5, markerfacecolor=fill, markeredgecolor=INK,
-                      markeredgewidth=0.8, zorder=5)[0].set_gid("piece")  # fmt: skip
-        axes.set_xlim(*breadth[[0, -1]])
-        axes.set_ylim(*pfa[[0, -1]])
-        axes.set_title(_(method.title), fontsize=8, loc="left")
-        axes.set_xlabel(_("breadth [cm]"), fontsize=8)
-        axes.tick_params(labelsize=7)
-        _write_texts(axes, lines, places)
-    drawn[0].set_ylabel(_("PFA [g]"), fontsize=8)
-    paint_legend(figure)

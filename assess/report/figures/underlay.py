@@ -40,10 +40,8 @@ class Underlay:
     @property
     def corners(self) -> Corners:
         """Its frame [m], from its lower left corner anticlockwise."""
-        one, two, three, four = (
-            _turned(self.plan, x, y)
-            for x, y in ((0, 0), (self.plan.width, 0), (self.plan.width, self.plan.height), (0, self.plan.height))
-        )
+        wide, tall = self.plan.width, self.plan.height
+        one, two, three, four = (_turned(self.plan, x, y) for x, y in ((0, 0), (wide, 0), (wide, tall), (0, tall)))
         return one, two, three, four
 
 

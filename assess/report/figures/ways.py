@@ -8,7 +8,7 @@ from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.figures.labels import Bounds, Corners, Point, box_around, find_covered
 from assess.report.say.route import is_held, say_blocked, say_missing, say_outlook, say_segment
-from assess.route_results import RouteState, RouteTables, SegmentRow
+from assess.route_results import RouteState, RouteTables
 from assess.routes.geometry import rectangle
 from assess.workbook.draft_names import is_draft
 
@@ -75,30 +75,22 @@ def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
         state = "unknown" if one.state == RouteState.NOT_KNOWN else str(one.state)
         start, end = (one.start_x_m or 0.0, one.start_y_m or 0.0), (one.end_x_m or 0.0, one.end_y_m or 0.0)
         along = (-one.extends_start_m, one.length_m + one.extends_end_m)  # as far as it goes on round a bend
+        said = _("{segment}: {state}; chance of blockage {chance}",
+                 segment=say_segment(one), state=say_outlook(one, routes.risk), chance=say_blocked(one))  # fmt: skip
+        piece = one.most_likely_piece
+        if one.missing:
+            said = f"{said}; {say_missing(one.missing)}"
+        elif one.state != RouteState.OPEN and piece is not None and not one.is_blocked_standing:
+            said = _("{segment}; most likely by {item}", segment=said, item=words.cut(piece.item, 40))
         angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0]))
         found.setdefault(one.floor, []).append(Stretch(
-            number=number,
-            name=words.cut(one.segment, NAMED),
-            title=_title(one, routes.risk),
-            style=styles[order.index("standing" if one.is_blocked_standing else state)],
-            start=start,
-            end=end,
+            number=number, name=words.cut(one.segment, NAMED), title=said,
+            style=styles[order.index("standing" if one.is_blocked_standing else state)], start=start, end=end,
             corners=rectangle(start, angle, along, one.clear_width_used_m),
             marks=words.ANCHORED if is_held(one, routes.risk) else "",  # anchors alone keep it from being worse
             is_draft=is_draft(one.route),
         ))  # fmt: skip
     return {floor: sorted(own, key=lambda one: order.index(one.style.name)) for floor, own in found.items()}
-
-
-def _title(one: SegmentRow, risk: float) -> str:
-    """Return the state and the chance of a segment, and which piece to fix or what to fill in where it is not open."""
-    said = _("{segment}: {state}; chance of blockage {chance}",
-             segment=say_segment(one), state=say_outlook(one, risk), chance=say_blocked(one))  # fmt: skip
-    if one.missing:
-        return f"{said}; {say_missing(one.missing)}"
-    if one.state == RouteState.OPEN or one.most_likely_piece is None or one.is_blocked_standing:
-        return said
-    return _("{segment}; most likely by {item}", segment=said, item=words.cut(one.most_likely_piece.item, 40))
 
 
 def place_signs(ways: Sequence[Stretch], taken: Sequence[Bounds], unit: float) -> Iterator[Stretch]:

@@ -5,7 +5,6 @@ import unicodedata
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from assess.errors import InputError
 from assess.i18n import Text
@@ -76,11 +75,6 @@ def name_safely(names: Iterable[str], joint: str) -> list[str]:
         taken.add(chosen.lower())
         found.append(chosen)
     return found
-
-
-def find_stem(assessment: Assessment) -> str:
-    """Return the name of the workbook without its ending: files are named after it."""
-    return Path(assessment.inventory.file_name).stem
 
 
 def round_number(value: float) -> float:

@@ -14,6 +14,7 @@ at every level, and without scatter.
 
 import math
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import numpy as np
 
@@ -52,7 +53,8 @@ def write_nrml(assessment: Assessment, found: PieceFragilities) -> files.Exchang
     """
     pga = find_ground_pga(assessment, found.im)
     kept, left = files.choose_curves("OpenQuake", found.curves, _judge)
-    stem, floors = files.find_stem(assessment), list(dict.fromkeys(floor for one in kept for floor in one.floors))
+    stem = Path(assessment.inventory.file_name).stem
+    floors = list(dict.fromkeys(floor for one in kept for floor in one.floors))
     root = ET.Element("nrml", {"xmlns": NAMESPACE})
     (name,) = files.name_safely([f"assess {stem}"], "_")
     model = ET.SubElement(root, "fragilityModel", {"id": name, "assetCategory": "contents", "lossCategory": "contents"})

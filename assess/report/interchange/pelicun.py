@@ -17,12 +17,13 @@ import csv
 import io
 import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from assess.fragility import MOST_MISFIT
-from assess.i18n import Text, fill
+from assess.i18n import fill
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.piece_fragility import PieceFragilities, PieceFragility
+from assess.pipeline.piece_fragility import PieceFragilities
 from assess.report.interchange import exchange_files as files
 from assess.text import plain_line
 from assess.units import GRAVITY
@@ -50,8 +51,16 @@ def write_pelicun(assessment: Assessment, found: PieceFragilities) -> files.Exch
     `found` is of `assessment`, by `assess.pipeline.piece_fragility.find_piece_fragilities`. Raises InputError if there
     is no curve to be written.
     """
-    kept, left = files.choose_curves("pelicun", found.curves, _judge)
-    stem = files.find_stem(assessment)
+    rough = fill(
+        "no lognormal stands in for its table: the misfit exceeds {most:g}. More draws lessen the part of it that is "
+        "chance; the table itself is in the formats csv and json",
+        most=MOST_MISFIT,
+    )
+    kept, left = files.choose_curves(
+        "pelicun", found.curves,
+        lambda one: None if one.curve.is_lognormal else rough if one.curve.kind == "fitted" else one.curve.why,
+    )  # fmt: skip
+    stem = Path(assessment.inventory.file_name).stem
     names = files.name_safely((f"{stem} {one.name} {found.im}" for one in kept), ".")
     ids = [f"assess.{name}" for name in names]
     demand, unit, size = DEMANDS[found.im]
@@ -84,16 +93,4 @@ def write_pelicun(assessment: Assessment, found: PieceFragilities) -> files.Exch
             f"{stem}-pelicun.json": f"{json.dumps(about, ensure_ascii=False, allow_nan=False, indent=1)}\n".encode(),
         },
         left_out=left,
-    )
-
-
-def _judge(one: PieceFragility) -> Text | None:
-    if one.curve.is_lognormal:
-        return None
-    if one.curve.kind != "fitted":
-        return one.curve.why
-    return fill(
-        "no lognormal stands in for its table: the misfit exceeds {most:g}. More draws lessen the part of it that is "
-        "chance; the table itself is in the formats csv and json",
-        most=MOST_MISFIT,
     )

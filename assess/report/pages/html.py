@@ -16,6 +16,7 @@ from assess.progress import SILENT, Progress
 from assess.report.blocks import Document
 from assess.report.content import Content
 from assess.report.cover import build_document
+from assess.report.figures.math_figures import write_letters
 from assess.report.fonts import font_faces, web_font_faces
 from assess.report.html_blocks import HtmlWriter
 from assess.report.report_options import ReportOptions
@@ -27,6 +28,7 @@ from assess.risk import RiskClass
 from assess.version import __version__
 
 SCRIPT = "script/report.js"
+_HIDDEN = 'width="0" height="0" aria-hidden="true" style="position: absolute"'
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,7 +123,7 @@ def render_document(
         sections=[PageSection(id=one.id, heading=one.heading, html=as_html(writer.section(one)))
                   for one in progress.checked(document.sections)],
         contents=as_html(writer.write_blocks([document.contents]) if document.contents else ""),
-        outlines=as_html(writer.outlines()),
+        outlines=as_html(f"<svg {_HIDDEN}>{write_letters(writer.letters)}</svg>" if writer.letters else ""),
     )  # fmt: skip
     return render_template(template, options, {"page": page, **(more or {})}, progress)
 

@@ -36,15 +36,6 @@ class Drawing:
     alternative: str
 
 
-@dataclass(frozen=True, slots=True)
-class Picture:
-    """A drawing as PNG, with its width on paper [mm] and what it says in words."""
-
-    png: bytes
-    width: float
-    alternative: str
-
-
 def measure(image: Image) -> Drawing:
     """Return a drawing with its size: that which it states, else that of its view box in pixels."""
     svg = image.source
@@ -75,8 +66,8 @@ def _declare(svg: str) -> str:
     return svg
 
 
-def draw_all(drawings: Sequence[Drawing], style: str, progress: Progress) -> list[Picture]:
-    """Return the drawings as pictures, drawn with a style.
+def draw_all(drawings: Sequence[Drawing], style: str, progress: Progress) -> list[bytes]:
+    """Return the drawings as PNG, drawn with a style.
 
     Raises PdfUnavailableError if WeasyPrint's native libraries are missing; CancelledError if the work was cancelled.
     """
@@ -104,21 +95,20 @@ def draw_all(drawings: Sequence[Drawing], style: str, progress: Progress) -> lis
         path = folder / "drawings.pdf"
         with start_layout(page) as layout:
             layout.finish(path, progress=progress)
-        return progress.wait_for(lambda: _read_pictures(path, drawings))
+        return progress.wait_for(lambda: _read_pictures(path))
 
 
-def _read_pictures(path: Path, drawings: Sequence[Drawing]) -> list[Picture]:
+def _read_pictures(path: Path) -> list[bytes]:
     import io
 
     import pypdfium2
 
-    pictures = []
-    document = pypdfium2.PdfDocument(path)
+    pictures, document = [], pypdfium2.PdfDocument(path)
     try:
-        for page, drawing in zip(document, drawings, strict=False):
+        for page in document:
             file = io.BytesIO()
             page.render(scale=POINTS).to_pil().save(file, "PNG", optimize=True)
-            pictures.append(Picture(file.getvalue(), drawing.width, drawing.alternative))
+            pictures.append(file.getvalue())
     finally:
         document.close()
     return pictures

@@ -129,8 +129,8 @@ class WordWriter:
                 self._head(section.heading, 1, section.id, is_new="run-on" not in section.kind.split())
             self.write_blocks(section.blocks)
         pictures = draw_all([drawing for _run, drawing in self.drawn], style, self.progress)
-        for (run, _drawing), picture in zip(self.drawn, pictures, strict=True):
-            _add_picture(run, picture.png, picture.width, picture.alternative)
+        for (run, drawing), png in zip(self.drawn, pictures, strict=True):
+            _add_picture(run, png, drawing.width, drawing.alternative)
 
     def write_blocks(self, found: Iterable[blocks.Block]) -> None:
         """Write blocks; an article behind another begins a page unless it is brief."""
