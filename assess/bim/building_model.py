@@ -44,10 +44,8 @@ SizesFrom = Literal["model", "scan"]
 
 @dataclass(frozen=True, slots=True)
 class Storey:
-    """A storey that holds something.
-
-    `key` is its GlobalId; "" where the model has no storeys, and this one stands for all of it. `elevation` is the
-    height of its floor above the building's zero, `level` its Z in the model [m].
+    """A storey, with the Z of its floor above the building's zero (`elevation`) and in the model (`level`) [m]. `key`
+    is "" where the model has no storeys, and this one stands for all of it.
     """
 
     key: str
@@ -58,10 +56,7 @@ class Storey:
 
 @dataclass(frozen=True, slots=True)
 class Space:
-    """A room or corridor: `area` is its plan, `bottom` and `top` its floor and ceiling [m].
-
-    `name` is what the model calls it (often a number), `title` its longer name. `storey` is a `Storey.key`.
-    """
+    """A room or corridor: its plan, Z of floor and ceiling [m]; `name` is often a number, `title` its longer name."""
 
     key: str
     storey: str
@@ -74,10 +69,8 @@ class Space:
 
 @dataclass(frozen=True, slots=True)
 class Door:
-    """A door: its centre, the direction of the normal of its wall, and the sizes of its opening [m].
-
-    `width` is that of the opening in the plan, `thickness` that of the wall; `overall` is the OverallWidth that the
-    model states, 0 where it states none.
+    """A door: its centre, the normal of its wall, and the sizes of its opening in the plan and of the wall [m].
+    `overall` is the OverallWidth that the model states, 0 where it states none.
     """
 
     key: str
@@ -141,10 +134,7 @@ class Piece:
 
 @dataclass(frozen=True, slots=True)
 class Skipped:
-    """Elements of one type, or class, as the file names it, that were left out for one reason.
-
-    `is_furniture` is False where the file says that they are fixed: all others may be furniture to be assessed.
-    """
+    """Elements of one type, or class, that were left out for one reason; not `is_furniture` where the file says so."""
 
     type: str
     count: int
@@ -170,12 +160,10 @@ def count_skipped(each: Iterable[tuple[str, Text, bool]]) -> tuple[Skipped, ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BuildingModel:
-    """A building model: the name of its file, the schema of that, and what it tells; "" or None where it does not.
-
-    Storeys stand from the lowest to the highest. Walls, with columns and curtain walls, and windows are cut at 1.2 m
-    above the floor, by the storey's key. `sizes_from` tells where the sizes of all pieces come from: of a "scan" they
-    are less certain. `azimuth_deg` is the compass direction of X. `shift` was taken off X and Y [m]: 0 unless the model
-    stands far from its origin. `warnings` may distort results, `remarks` are what else a user should know.
+    """A building model; "" or None where it does not say. Storeys are ordered from the lowest. Walls, with columns and
+    curtain walls, and windows are cut at 1.2 m above the floor, by the storey's key. `azimuth_deg` is the compass
+    direction of X. `shift` was taken off X and Y [m]: 0 unless the model stands far from its origin. `warnings` may
+    distort results.
     """
 
     source: str
@@ -203,10 +191,7 @@ class BuildingModel:
 
 
 def bring_near(model: BuildingModel) -> BuildingModel:
-    """Return a model whose positions lie near the origin: a workbook holds them to 100 km only, and plans to 5 km.
-
-    What lies far from most of it is left out: elements forgotten at the origin, damaged positions.
-    """
+    """Return a model near the origin, as workbooks hold positions to 100 km, without what lies far from the rest."""
     points = list(_list_points(model))
     if not points:
         return model

@@ -268,10 +268,7 @@ def _read_floor(sheet: _Sheet, unit: str, faults: list[Text], name: str, number:
 def _list_floors(
     floors: Mapping[str, _Floor], used: Collection[str]
 ) -> tuple[list[dict[str, Any]], dict[str, Any], list[Text]]:
-    """Return the rows of Floors from the lowest, the height as a field of Building if it is known, and warnings.
-
-    `used`: names of those with pieces, which stay even if they are no storeys.
-    """
+    """Return the rows of Floors from the lowest, the height as a field of Building if it is known, and warnings."""
     kept = [floor for floor in floors.values() if floor.category not in NO_STOREYS or floor.name in used]
     kept.sort(key=lambda floor: floor.elevation or 0.0)
     known = [(floor, floor.elevation) for floor in kept if floor.elevation is not None]
@@ -353,10 +350,7 @@ def _read_type(name: str, row: Row, unit: str, origin: Text) -> dict[str, Any] |
 
 
 def _read_length(column: Column, label: str, value: object, unit: str) -> float:
-    """Return a length [m] within the limits of a column of the inventory; CellError if it is none.
-
-    Numbers stored as texts are read as programs write them, with a point as the decimal sign.
-    """
+    """Return a length [m] within the limits of a column, also of a number stored as a text; else CellError."""
     typed = _read_number(value)
     found, _ = cell_reader(replace(column, label=label), unit)(value if typed is None else typed)
     if not isinstance(found, float):

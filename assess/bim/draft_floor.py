@@ -113,11 +113,7 @@ def find_sides(model: BuildingModel) -> dict[str, Sides]:
 
 
 def find_ground(model: BuildingModel) -> Storey | None:
-    """Return the storey from which doors lead out of the building; None where no storey has spaces and doors.
-
-    It is the lowest with spaces and doors that is no basement, by its elevation above the building's zero; where all
-    are basements, the highest.
-    """
+    """Return the lowest storey with spaces and doors that is no basement, else the highest; None if there is none."""
     with_spaces, with_doors = ({one.storey for one in some} for some in (model.spaces, model.doors))
     storeys = [one for one in model.storeys if one.key in with_spaces & with_doors]
     above = [one for one in storeys if one.elevation >= BASEMENT]
@@ -165,10 +161,7 @@ class Link:
 
 @dataclass(frozen=True)
 class FloorPlan:
-    """The plan of one storey. `spaces` and `polygons` are in the same order.
-
-    `solids` are walls and windows, `footprints` those of the furniture that stands on the floor.
-    """
+    """The plan of one storey: spaces with their polygons, walls and windows, furniture that stands on the floor."""
 
     storey: Storey
     spaces: tuple[Space, ...]
@@ -255,10 +248,7 @@ def link_stairs(model: BuildingModel, plan: FloorPlan) -> list[Link]:
 
 
 class _Rays(NamedTuple):
-    """Rays from the edges of the rooms of a storey: where each begins, on the edge, and its direction; (n, 2) arrays.
-
-    `room` and `edge` (n,) are the number of the room, and of the edge among all edges.
-    """
+    """Rays from the edges of rooms: start and direction, (n, 2), the numbers of the room and of the edge, (n,)."""
 
     at: FloatArray
     outward: FloatArray
@@ -407,10 +397,7 @@ def _widest(area: BaseGeometry, otherwise: BaseGeometry) -> BaseGeometry:
 
 
 def find_room_points(model: BuildingModel) -> dict[str, Point]:
-    """Return the position of the place of each space, by its key: the middle of its widest free floor [m].
-
-    Drafted routes begin there. A space without an area has its first corner.
-    """
+    """Return the middle of the widest free floor of each space, else a corner [m]: drafted routes begin there."""
     from shapely.ops import polylabel
 
     found: dict[str, Point] = {

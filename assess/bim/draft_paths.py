@@ -262,10 +262,7 @@ def _follow_axes(ways: Ways) -> None:
 def _add_axis(
     ways: Ways, axis: Axis, nodes: Iterable[tuple[str, Point]], own: dict[str, list[str]], number: int
 ) -> list[str]:
-    """Add the places along an axis at which nodes are joined to it, and its two ends; return their names.
-
-    `own` notes which nodes are joined to each.
-    """
+    """Add the places along an axis at which nodes are joined to it (see `own`), and its ends; return their names."""
     beyond = max(BESIDE, BEYOND * axis.width)
     low, high = axis.inset, axis.length - axis.inset
     found, on_axis = [(low, ""), (high, "")], set[str]()

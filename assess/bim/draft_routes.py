@@ -82,12 +82,9 @@ class Node:
 
 @dataclass(slots=True)
 class Network:
-    """The ways in a building: inside each room, through doors and openings, and over stairs.
-
-    `graph` joins nodes by name, with the cost, the space and the width of each way.
-    `plans` are those of storeys by their keys, `rooms` the nodes of rooms by the keys of their spaces, `openings` those
-    of openings, and `exits` and `stairs` the nodes to which ways lead. `sides` and `kinds` are those of doors, `places`
-    the positions of rooms.
+    """The ways in a building: `graph` joins nodes by name, with the cost, the space and the width of each way. `plans`
+    are by storeys, `rooms` the nodes of rooms by their spaces; ways lead to `exits` and `stairs`. `sides` and `kinds`
+    are those of doors, `places` the positions of rooms.
     """
 
     sides: Mapping[str, Sides]
@@ -148,10 +145,7 @@ def _build_network(model: BuildingModel, sides: Mapping[str, Sides], places: Map
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """The next step out from a node: to which node, how far it is from there to the end [m], and where that leads.
-
-    `target` is the exit or the stair end at which the way out leaves the storey.
-    """
+    """The next step out from a node, the way left to the end [m], and at which exit or stair that leaves the storey."""
 
     start: str
     end: str
@@ -224,11 +218,9 @@ def measure_gap(plan: FloorPlan, space: str, ends: tuple[Point, Point], links: I
 
 
 def _set_widths(links: Sequence[Link], between_walls: float | None, gap: float | None) -> dict[str, Any]:
-    """Return the widths of a segment and what is assumed of them.
-
-    `between_walls`: the free width of a corridor in whose middle it lies [m].
-    `gap`: from `measure_gap`: it counts beside one of the others, and where it is less than the width that must stay
-    free otherwise.
+    """Return the widths of a segment and what is assumed of them. `between_walls`: the free width of a corridor in
+    whose middle it lies. `gap`: from `measure_gap`: it counts next to others, and where less than must stay free
+    otherwise.
     """
     narrow = [link for link in links if link.overall > 0 or 0 < link.clear < DEFAULT_WIDTH]
     known = [link.clear for link in narrow] + ([] if between_walls is None else [between_walls])
@@ -254,11 +246,7 @@ def _set_widths(links: Sequence[Link], between_walls: float | None, gap: float |
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DraftRoutes:
-    """Drafted routes as rows of Places, those alone that the segments add to rooms, doors and stairs, and of Routes.
-
-    `unreached` are the names of the rooms from which no way leads to an exit or a stair; `remarks` tell what was
-    assumed, and what is to be checked.
-    """
+    """Rows of Routes and of the Places that they add; rooms without a way out; what is assumed or to be checked."""
 
     places: Rows = ()
     routes: Rows = ()
@@ -269,13 +257,9 @@ class DraftRoutes:
 def draft_routes(
     model: BuildingModel, names: Mapping[str, str], sides: Mapping[str, Sides], places: Mapping[str, Point]
 ) -> DraftRoutes:
-    """Draft the evacuation routes of a building.
-
-    `names`: the names of places: of rooms and doors by their keys, of ends of stairs by key and end (``KEY foot``).
-    Names of floors by the keys of storeys, where they are not those of the model.
-    `sides` of doors and `places` of rooms: from `find_sides` and `find_room_points` of `assess.bim.draft_floor`.
-
-    The draft is empty, with remarks that say why, where there is nothing to draft.
+    """Draft the evacuation routes of a building; remarks say why where there are none. `names`: of rooms and doors by
+    their keys, of ends of stairs by key and end (``KEY foot``), of floors where they are not those of the model.
+    `sides` of doors and `places` of rooms are from `draft_floor`.
     """
     network = _build_network(model, sides, places)
     steps = _find_steps(network)

@@ -48,11 +48,9 @@ _TAIL = 65536
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """The model with a property set on each of `written` pieces, and what to fix as topics; None if not asked for.
-
-    For some pieces, here by their names, nothing is written: those without a Source ID, those `missing` in the model,
-    and those that are something else there, by its class (`refused`). Of those that share a Source ID (`repeated`) the
-    worse is written.
+    """The model with a property set on each of `written` pieces, and its topics; None if not asked for. Nothing is
+    written for pieces without a Source ID, those `missing` in the model, and those `refused`, by their class there; of
+    those that share a Source ID (`repeated`) the worse is written.
     """
 
     model: bytes | None
@@ -72,10 +70,8 @@ class Export:
 def build_export(
     found: ExportRun, model: Path, progress: Progress, *, with_properties: bool, with_topics: bool
 ) -> Export:
-    """Bring results back to a building model: as property sets in a copy of it, as topics, or both.
-
-    Raises ModelError if the model cannot be read, ifcopenshell is not installed, no piece is in the model, or a piece
-    has such a property set already.
+    """Bring results back to a building model: as property sets in a copy of it, as topics, or both. Raises ModelError
+    if the model cannot be read, ifcopenshell is missing, no piece is in the model, or one was exported before.
     """
     check_installed()
     check_model(model, model.name)
@@ -143,11 +139,7 @@ def build_export(
 
 
 def add_properties(data: bytes, name: str, part: ModelPart, found: ExportRun, pieces: Sequence[Pair]) -> bytes:
-    """Return a building model with a property set on each of its pieces.
-
-    `pieces`: the pieces with their elements: of several with one Source ID, the worst.
-    Raises ModelError if the file does not end as an IFC file does.
-    """
+    """Return a model with a property set on each of its pieces; ModelError if it does not end as an IFC file does."""
     what = write_text(_("Chance that the piece overturns in the earthquake named in Scenario, not per year. Forces are "
                         "for screening, not design."))  # fmt: skip
     lines: list[str] = []
@@ -174,10 +166,7 @@ def add_properties(data: bytes, name: str, part: ModelPart, found: ExportRun, pi
 
 
 def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, str]]:
-    """Yield the properties of a piece: names, the same in every language, and values as STEP text.
-
-    RiskClass is the class in the words of the report, so that what is outside its classes is no class here either.
-    """
+    """Yield the names, alike in every language, and values as STEP text; the class is in the words of the report."""
     run, chance, inputs = found.run, one.chance, one.inputs
     yield "RiskClass", write_label(say_class(run, one, one.upper, is_short=True))
     if one.upper != one.risk:
@@ -255,8 +244,6 @@ def write_real(value: float) -> str:
 
 def append_lines(data: bytes, lines: Sequence[str], name: str) -> bytes:
     """Return a file with lines at the end of its data, whose other bytes all stay; line ends as those of the file.
-
-    `lines`: entities in ASCII, each with its semicolon.
     Raises ModelError if its data do not end where the file does.
     """
     *_rest, last = [None, *_END.finditer(data, max(0, len(data) - _TAIL))]  # the ENDSEC of the last section

@@ -25,10 +25,8 @@ Box = tuple[Place, Place]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModelElement:
-    """An element: its GlobalId, name and number in the file, and that of the OwnerHistory for what is added, or 0.
-
-    `box` and `room` are corners of the boxes around it and around its room, in the axes of the model [m]; None where
-    there is none, or that was not asked for.
+    """An element, its number in the file, and that of the OwnerHistory for what is added, or 0. `box` and `room` are
+    the boxes around it and around its room [m]; None where there is none, or that was not asked for.
     """
 
     key: str
@@ -53,10 +51,7 @@ class ModelDoor:
 
 @dataclass(frozen=True, slots=True)
 class ModelPart:
-    """What was found of a model: the GlobalId of its project, its highest number, elements and doors.
-
-    `refused` are the classes, by GlobalId, of what was sought but is no furniture.
-    """
+    """What was found of a model; `refused` are the classes, by GlobalId, of what was sought but is no furniture."""
 
     project: str
     last_number: int

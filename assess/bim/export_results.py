@@ -66,11 +66,7 @@ class ExportPiece(PastPiece):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportSegment:
-    """A segment of a route that is not open, or would be blocked by one piece alone.
-
-    `ends` are those of its centre line on the plan [m], None where they are not known; `items` are the pieces that
-    reach into it.
-    """
+    """A segment that is not open, or that one piece alone would block: its ends [m], and pieces that reach into it."""
 
     route: str
     ends: tuple[Point, Point] | None
@@ -79,10 +75,7 @@ class ExportSegment:
 
 @dataclass(frozen=True, kw_only=True)
 class ExportRun:
-    """The results of a run; `steps` are what to fix for its routes, `item_index` of which is a place in `pieces`.
-
-    `language` is the code of the language of its reports, "" where the file does not tell it.
-    """
+    """The results of a run; `steps` are what to fix for its routes, `item_index` of which is a place in `pieces`."""
 
     run: PastRun
     language: str
@@ -103,11 +96,7 @@ def list_items(entry: ScheduleRow) -> list[str]:
 
 
 def read_export(path: Path) -> ExportRun:
-    """Read the results of a run, from results.json or its folder.
-
-    Raises InputError if they cannot be read (see `assess.compare.past_run.read_run`), or hold no identifier of any
-    piece.
-    """
+    """Read the results of a run; InputError as `read_run` raises it, or if they hold no identifier of any piece."""
     run, record = read_record(path)
     pieces = tuple(map(_read_piece, record.rows("items"), run.pieces))
     if not any(one.source_id for one in pieces):

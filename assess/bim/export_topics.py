@@ -102,10 +102,9 @@ Pair = tuple[ExportPiece, ModelElement]
 
 @dataclass(frozen=True, slots=True)
 class Topics:
-    """A file of topics: its bytes, how many there are, and how many entries of the schedule it leaves out.
-
-    `unplaced` have no piece in the model; `beyond` are more than a file holds. `doors` counts topics that select a
-    door. `is_placed` tells whether the positions of workbook and model agree, so that doors could be found.
+    """A file of topics. `unplaced` entries have no piece in the model, `beyond` are more than a file holds; `doors`
+    counts topics that select one. `is_placed`: whether the positions of workbook and model agree, so that doors could
+    be found.
     """
 
     data: bytes
@@ -117,10 +116,7 @@ class Topics:
 
 
 def list_entries(found: ExportRun, items: Collection[str]) -> list[ScheduleRow]:
-    """Return the entries of the schedule that have a piece in the model, `MOST` at most.
-
-    `items` are the names of the pieces in the model.
-    """
+    """Return the entries of the schedule that have one of the `items` in the model, `MOST` at most."""
     return [one for one in found.entries if any(item in items for item in list_items(one))][:MOST]
 
 
@@ -241,10 +237,7 @@ def _dump(root: ElementTree.Element) -> bytes:
 
 
 def find_shift(pairs: Sequence[Pair]) -> Point | None:
-    """Return what is to be added to positions of the workbook to have those of the model [m].
-
-    Whole metres; None where no position is known, or where those of workbook and model do not agree.
-    """
+    """Return whole metres that lead from positions of the workbook to the model; None if unknown, or they differ."""
     known = [(one.place, find_middle(element.box)) for one, element in pairs if one.place and element.box]
     if not known:
         return None
@@ -256,10 +249,7 @@ def find_shift(pairs: Sequence[Pair]) -> Point | None:
 def find_doors(
     pairs: Sequence[Pair], segments: Sequence[ExportSegment], doors: Sequence[ModelDoor], shift: Point | None
 ) -> list[ModelDoor]:
-    """Return the doors of the segments that some pieces may block: of each piece the nearest, without repetition.
-
-    Doors at an end of such a segment come before those that it passes.
-    """
+    """Return the door nearest to each piece on segments that it may block: those at their ends before others."""
     found: dict[str, ModelDoor] = {}
     for piece, element in pairs:
         if shift is None or element.box is None:

@@ -23,10 +23,7 @@ _HEAD = re.compile(rb'<svg xmlns="http://www\.w3\.org/2000/svg" viewBox="0 0 [\d
 
 
 def draw_storey(model: BuildingModel, storey: Storey) -> tuple[bytes, dict[str, float]] | None:
-    """Return the plan of a storey as an SVG, with the fields of Floors that tell where it lies [m].
-
-    None where nothing of it is known.
-    """
+    """Return the plan of a storey as an SVG, and the fields of Floors that place it [m]; None if nothing is known."""
     walls, windows = model.walls.get(storey.key, ()), model.windows.get(storey.key, ())
     rooms = [one.area for one in model.spaces if one.storey == storey.key]
     doors = []

@@ -168,10 +168,7 @@ def find_unit(model: Any, name: str) -> float:
 
 
 def say(value: object) -> str:
-    """Return a text of the model in one line; "" for none, and for what programs write in its place.
-
-    What is no text is taken out as from cells (`assess.workbook.values`): else names that are read alike would differ.
-    """
+    """Return a text of the model in one line, read as cells are; "" for what programs write in place of a text."""
     text = " ".join(read_text(value).split())[:LONGEST] if value is not None else ""
     return "" if text.casefold().startswith(_PLACEHOLDERS) or text in ERRORS else text
 

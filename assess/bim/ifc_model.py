@@ -104,11 +104,9 @@ _NEAR_FLOOR = 0.3
 
 
 def read_model(path: Path, name: str, also: Sequence[str] = ()) -> BuildingModel:
-    """Read a building model; call it in a process of its own (`assess.bim.model_process`).
-
-    `also`: further classes whose elements are pieces, such as IfcBuildingElementProxy.
-    Raises ModelError if it is no whole building model, names no unit of length, holds no building, or `also` names no
-    class.
+    """Read a building model; call it in a process of its own (`assess.bim.model_process`). `also`: further classes of
+    pieces. Raises ModelError if it is not whole, names no unit of length, holds no building, or lacks a class of
+    `also`.
     """
     return read_with(path, name, lambda model: _understand(model, name, also))
 
@@ -161,10 +159,7 @@ def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
 
 
 def _describe_site(model: Any) -> dict[str, Any]:
-    """Return name, address, latitude, longitude and the compass direction of X [deg], as far as they are given.
-
-    Latitude and longitude are left out where both are 0, or one of them is out of range.
-    """
+    """Return name, address, latitude, longitude and the compass direction of X [deg], as far as they are given."""
     buildings, projects = model.by_type("IfcBuilding"), model.by_type("IfcProject")
     named = [say(one.LongName) or say(one.Name) for one in (*buildings, *projects)]
     address = next((one.BuildingAddress for one in buildings if one.BuildingAddress), None)
@@ -314,11 +309,7 @@ def _cut_walls(model: Any, storeys: Sequence[Storey]) -> tuple[Plans, Plans]:
 def _find_pieces(
     model: Any, storeys: Sequence[Storey], spaces: Sequence[Space], also: Sequence[str]
 ) -> tuple[list[Piece], tuple[Storey, ...], tuple[Skipped, ...], list[Text]]:
-    """Return the pieces of a model, its storeys with the levels of their floors, what was left out, and warnings.
-
-    Raises ModelError if `also` names a class that the schema of the model does not have, or there are over
-    `MOST_PIECES` pieces.
-    """
+    """Return the pieces, the storeys with the levels of their floors, what was left out, and warnings."""
     import ifcopenshell
     from ifcopenshell.util.element import get_type
 
@@ -450,10 +441,7 @@ def find_shift(bottoms: Sequence[float], stated: float) -> float:
 
 
 def _name_type(element: Element) -> str:
-    """Return the type of an element in words: as a program for buildings shows it, without its number.
-
-    Revit writes ``Family:Type:Number`` as the name, others the name of the type alone.
-    """
+    """Return the type of an element in words. Revit writes ``Family:Type:Number`` as the name, others the type."""
     from ifcopenshell.util.element import get_type
 
     kind = get_type(element)

@@ -60,10 +60,7 @@ class ImportedBuilding:
 
 
 def build_workbook(imported: ImportedBuilding) -> bytes:
-    """Return the workbook of an import, in the language in use.
-
-    Raises OSError if there is no room for temporary files.
-    """
+    """Return the workbook of an import, in the language in use; OSError if there is no room for temporary files."""
     content = Content(list_rows(imported))
     if len(imported.items) <= MOST_LIVE:
         content = store_live(content, "si")

@@ -45,11 +45,8 @@ _Given = ParamSpec("_Given")
 def run_apart(
     name: str, progress: Progress, work: Callable[_Given, _Found], *args: _Given.args, **named: _Given.kwargs
 ) -> _Found:
-    """Return what `work` returns, called in a process of its own.
-
-    `work`: a function of a module of this package; arguments and what it returns are plain data.
-
-    Raises ModelError if the process crashed, or reached a limit; AssessError as `work` raises it.
+    """Return what `work`, a function of a module, returns of plain data, called in a process of its own. Raises
+    ModelError if the process crashed, or reached a limit; AssessError as `work` raises it.
     """
     with private_folder(PREFIX) as folder:
         order = (work.__module__, work.__qualname__, args, named, SECONDS, MEMORY)

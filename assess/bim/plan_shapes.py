@@ -44,10 +44,7 @@ NOTHING = Polygon()
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """Triangles of an element: corners (n, 3) in the axes of the model [m], and the indices (m, 3) of those of each.
-
-    `axes` (3, 3) are its own axes as columns, in those of the model.
-    """
+    """Triangles of an element: corners (n, 3) [m], indices (m, 3) of those of each, its axes (3, 3) as columns."""
 
     points: FloatArray
     triangles: IntArray
@@ -76,10 +73,7 @@ def join(shapes: Sequence[Shape]) -> Shape:
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """The box round a piece: centre of its plan, shorter and longer side, height [m]; direction of the shorter [deg].
-
-    The fields are those of `assess.bim.building_model.Piece`; the base is the convex hull of the points at the floor.
-    """
+    """The box round a piece, with the fields of `Piece`; the base is the convex hull of the points at the floor."""
 
     x: float
     y: float
@@ -295,9 +289,8 @@ class SpaceSearch:
         self._trees = {storey: shapely.STRtree(polygons) for storey, polygons in self._polygons.items()}
 
     def find(self, storey: str, point: Point, reach: float = 0.0) -> list[Space]:
-        """Return the spaces that hold a point in plan, the smallest first; of those that are as large the first.
-
-        `reach`: how far a space may be from a point that it holds [m].
+        """Return the spaces up to `reach` [m] from a point in plan, the smallest first; of those that are as large the
+        first.
         """
         if storey not in self._trees:
             return []

@@ -35,12 +35,9 @@ _LOOKED_AT = 4096
 def read_source(
     path: Path, name: str, progress: Progress = SILENT, *, routes: Drafts = "none", also: Sequence[str] = ()
 ) -> ImportedBuilding:
-    """Read the furniture of a building from a building model (IFC), a scan (RoomPlan), a home, or a COBie file.
-
-    `also`: further classes of an IFC model whose elements are furniture. The record of the import is among its files.
-
-    Raises ModelError or WorkbookError if it is none of these, is damaged, or beyond a limit: the message tells the
-    fix; InputError if it cannot be opened.
+    """Read the furniture of a building model (IFC), a scan (RoomPlan), a home or a COBie file, with a record of the
+    import. `also`: further classes of an IFC model. Raises ModelError or WorkbookError if it is none of these, is
+    damaged, or beyond a limit; InputError if it cannot be opened.
     """
     if not path.exists():
         raise InputError(fill("{name} does not exist. Check the name and the folder.", name=name))

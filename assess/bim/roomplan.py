@@ -154,10 +154,7 @@ class Scanned:
 
 
 def _load(data: bytes, name: str) -> dict[str, Any]:
-    """Return the document of a file with the list "rooms" of all its rooms.
-
-    Raises ModelError if it is no scan, not complete, or too large.
-    """
+    """Return the document of a file, its "rooms" a list; ModelError if it is no scan, not complete, or too large."""
     fault = None
     if len(data) > MOST_BYTES:
         fault = fill("{name} is larger than {most} MB, the most that is read of a scan. Scan fewer rooms at a time.",
@@ -312,10 +309,7 @@ def _around(x: float, y: float) -> tuple[tuple[float, float], ...]:
 
 
 def read_roomplan(data: bytes, name: str) -> BuildingModel:
-    """Return what a scan tells of a building.
-
-    Raises ModelError if it is no scan, damaged, or beyond a limit; the message names the place in the file.
-    """
+    """Return what a scan tells of a building; ModelError, with the place in the file, if damaged or too large."""
     scan = _Scan(_Reader(data, name))
     rooms = scan.find_rooms()
     pieces, unsure, skipped = scan.find_pieces(rooms)

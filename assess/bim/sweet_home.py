@@ -90,11 +90,7 @@ class _Element:
 
 
 def read_sweet_home(data: bytes, name: str) -> BuildingModel:
-    """Return what a home tells of a building.
-
-    Raises ModelError if it is no home, of a version that is not read, damaged, or beyond a limit; with the place in its
-    Home.xml.
-    """
+    """Return what a home tells of a building; ModelError, with the place in Home.xml, if damaged or too large."""
     too_large = ModelError(
         fill("{name} is too large: at most {file} MB are read, and {home} MB of the Home.xml in it. Save fewer "
              "levels.", name=name, file=MOST_BYTES // 2**20, home=MOST_HOME // 2**20)

@@ -56,9 +56,8 @@ class FolderLock:
         return self._handle >= 0
 
     def take(self) -> bool:
-        """Return False if another process, or another thread, holds the lock.
-
-        True where the file system has no locks: nothing can be known there.
+        """Return False if another holds the lock; True also where the file system has no locks: nothing can be known
+        there.
         """
         for path in (self._folder, self._file):
             try:
@@ -108,10 +107,7 @@ def _lock(handle: int) -> bool | None:
 
 @contextmanager
 def locked(folder: Path, progress: Progress = SILENT) -> Iterator[None]:
-    """Hold the lock on a folder.
-
-    Raises OutputError if another run has held it for `PATIENCE`; CancelledError if the work was cancelled.
-    """
+    """Hold the lock on a folder; OutputError if another run has held it for `PATIENCE`, CancelledError if cancelled."""
     lock, latest = FolderLock(folder), time.monotonic() + PATIENCE
     while not lock.take():
         progress.check()
@@ -128,10 +124,8 @@ def locked(folder: Path, progress: Progress = SILENT) -> Iterator[None]:
 
 @contextmanager
 def private_folder(prefix: str, where: Path | None = None) -> Iterator[Path]:
-    """Yield a new folder that others cannot read, locked while this process lives; it is removed at the end.
-
-    `where`: the folder that it is made in; that of the system for temporary ones by default. It is known to what ends
-    the process early, which removes it as well. OSError if nothing can be made there.
+    """Yield a new folder that others cannot read, locked while this process lives, and removed however that ends.
+    `where`: by default the folder for temporary files. OSError if nothing can be made there.
     """
     where = where or Path(tempfile.gettempdir())
     sweep(where, prefix)

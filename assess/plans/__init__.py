@@ -32,12 +32,9 @@ class Drawing:
 
 
 def read_plan(data: bytes, width: float | None) -> Drawing:
-    """Return what is kept of a plan's file, by its content, whatever its name.
-
-    `data`: the file: PNG, JPEG, SVG or DXF.
-    `width`: width of the whole plan [m], where it is known: a picture is kept with 100 pixels to the metre.
-    Raises PictureError if it is none of these, is too large, is damaged, or cannot be read here; the message says how
-    to fix it.
+    """Return what is kept of a PNG, JPEG, SVG or DXF file, by its content; of a picture 100 pixels to each metre of
+    `width`. Raises PictureError if it is none of these, is too large or damaged, or cannot be read here; with how to
+    fix it.
     """
     if is_picture(data):
         content, aspect = prepare_plan(data, count_side(width))

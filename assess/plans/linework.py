@@ -51,10 +51,8 @@ def find_box(lines: Sequence[Line]) -> Box:
 
 
 def pack(lines: Sequence[Line], box: Box, *, is_down: bool) -> tuple[bytes, float]:
-    """Return lines as bytes, and the aspect (height over width) of `box`, which they are cut at.
-
-    All are in the drawing's units; `is_down` tells whether Y points downwards. Raises PictureError if nothing is left,
-    or too much.
+    """Return lines as bytes, and the aspect (height over width) of `box`, at which they are cut; PictureError if
+    nothing is left, or too much. All are in the drawing's units; `is_down`: Y points downwards.
     """
     left, low, right, high = box
     wide, tall = right - left, high - low
