@@ -13,7 +13,7 @@ OPEN, FORMATS, ARCHIVE = "assess.workbook.open", "assess.motion.formats", "asses
 COMMON, CSV, TEXT = (f"assess.motion.formats.{name}" for name in ("_format", "plain_csv", "_text"))
 ALLOWANCE, PICTURES, PLANS = "assess.workbook.kept_files", "assess.pictures", "assess.plans"
 
-MODEL, PROCESS = "assess.bim.ifc_file", "assess.bim.model_process"
+MODEL, PROCESS = "assess.bim.ifc_model", "assess.bim.model_process"
 SCAN, HOME = "assess.bim.roomplan", "assess.bim.sweet_home"
 
 ROWS: tuple[tuple[str, str, str, float, str, str], ...] = (
@@ -27,7 +27,7 @@ ROWS: tuple[tuple[str, str, str, float, str, str], ...] = (
     ("Building model (IFC): size of the file", MODEL, "MOST_BYTES", 2**20, "{:.0f} MiB", REFUSED),
     ("Building model: processor time", PROCESS, "SECONDS", 1, "{:.0f} s", REFUSED),
     ("Building model: memory", PROCESS, "MEMORY", 2**30, "{:.0f} GiB", REFUSED),
-    ("Building model: pieces", "assess.bim.ifc_model", "MOST_PIECES", 1, "{:,.0f}", REFUSED),
+    ("Building model: pieces", MODEL, "MOST_PIECES", 1, "{:,.0f}", REFUSED),
     ("Scan (RoomPlan): size of the file", SCAN, "MOST_BYTES", 2**20, "{:.0f} MiB", REFUSED),
     ("Scan (RoomPlan): objects", SCAN, "MOST_OBJECTS", 1, "{:,.0f}", REFUSED),
     ("Home (Sweet Home 3D): size of the file", HOME, "MOST_BYTES", 2**20, "{:.0f} MiB", REFUSED),

@@ -195,49 +195,12 @@ def bring_near(model: BuildingModel) -> BuildingModel:
     points = list(_list_points(model))
     if not points:
         return model
-    near = _leave_out_far(model, *(median(one[axis] for one in points) for axis in (0, 1)))
-    points = list(_list_points(near))
-    if not points or max(max(abs(x), abs(y)) for x, y in points) <= FARTHEST:
-        return near
-    x, y = (ROUND * (min(one[axis] for one in points) // ROUND) for axis in (0, 1))
-
-    def move(some: Any) -> Any:
-        return tuple(replace(one, x=one.x - x, y=one.y - y) for one in some)
-
-    def move_area(area: Area) -> Area:
-        return tuple(tuple((round(u - x, 3), round(v - y, 3)) for u, v in ring) for ring in area)
-
-    def move_plans(plans: Mapping[str, Sequence[Area]]) -> dict[str, tuple[Area, ...]]:
-        return {key: tuple(map(move_area, areas)) for key, areas in plans.items()}
-
-    text = fill("The model stands far from its origin: {x:,.0f} m were taken off every X, and {y:,.0f} m off every Y.",
-                x=x, y=y)  # fmt: skip
-    return replace(
-        near, pieces=move(near.pieces), doors=move(near.doors), stairs=move(near.stairs),
-        spaces=tuple(replace(one, area=move_area(one.area)) for one in near.spaces),
-        walls=move_plans(near.walls), windows=move_plans(near.windows), shift=(x, y), remarks=(*near.remarks, text),
-    )  # fmt: skip
-
-
-def _list_points(model: BuildingModel) -> Iterator[Point]:
-    placed: Sequence[Piece | Door | Stair] = (*model.pieces, *model.doors, *model.stairs)
-    yield from ((one.x, one.y) for one in placed)
-    for area in (*(one.area for one in model.spaces), *chain.from_iterable(model.walls.values())):
-        yield from area[0]
-
-
-def _leave_out_far(model: BuildingModel, x: float, y: float) -> BuildingModel:
-    def count(some: BuildingModel) -> int:
-        areas = sum(map(len, (*some.walls.values(), *some.windows.values())))
-        return len(some.spaces) + len(some.doors) + len(some.stairs) + areas
+    middle = tuple(median(one[axis] for one in points) for axis in (0, 1))
 
     def is_near(*some: Point) -> bool:
-        return all(abs(one - x) <= REACH and abs(other - y) <= REACH for one, other in some)
+        return all(abs(one - at) <= REACH for point in some for one, at in zip(point, middle, strict=True))
 
-    def keep(some: Any) -> Any:
-        return tuple(one for one in some if is_near((one.x, one.y)))
-
-    def keep_areas(plans: Mapping[str, Sequence[Area]]) -> dict[str, tuple[Area, ...]]:
+    def keep(plans: Mapping[str, Sequence[Area]]) -> dict[str, tuple[Area, ...]]:
         return {key: tuple(one for one in areas if is_near(*one[0])) for key, areas in plans.items()}
 
     spaces = tuple(one for one in model.spaces if is_near(*one.area[0]))
@@ -249,13 +212,43 @@ def _leave_out_far(model: BuildingModel, x: float, y: float) -> BuildingModel:
         else:
             far.append((name_skipped(one.ifc_class, one.type), FAR, True))
     near = replace(
-        model, spaces=spaces, doors=keep(model.doors), stairs=keep(model.stairs), pieces=tuple(pieces),
-        walls=keep_areas(model.walls), windows=keep_areas(model.windows),
-        skipped=(*model.skipped, *count_skipped(far)),
+        model, spaces=spaces, doors=tuple(one for one in model.doors if is_near((one.x, one.y))),
+        stairs=tuple(one for one in model.stairs if is_near((one.x, one.y))), pieces=tuple(pieces),
+        walls=keep(model.walls), windows=keep(model.windows), skipped=(*model.skipped, *count_skipped(far)),
     )  # fmt: skip
-    lost = count(model) - count(near)
-    if not lost:
+    before, after = (
+        sum(map(len, (one.spaces, one.doors, one.stairs, *one.walls.values(), *one.windows.values())))
+        for one in (model, near)
+    )
+    if before > after:
+        text = fill("Rooms, doors, stairs and parts of walls that lie more than {reach:g} km from the middle of the "
+                    "building were left out: {n:,}.", n=before - after, reach=REACH / 1000)  # fmt: skip
+        near = replace(near, remarks=(*near.remarks, text))
+    points = list(_list_points(near))
+    if not points or max(max(abs(x), abs(y)) for x, y in points) <= FARTHEST:
         return near
-    text = fill("Rooms, doors, stairs and parts of walls that lie more than {reach:g} km from the middle of the "
-                "building were left out: {n:,}.", n=lost, reach=REACH / 1000)  # fmt: skip
-    return replace(near, remarks=(*near.remarks, text))
+    x, y = (ROUND * (min(one[axis] for one in points) // ROUND) for axis in (0, 1))
+
+    def move(some: Any) -> Any:
+        return tuple(replace(one, x=one.x - x, y=one.y - y) for one in some)
+
+    def move_area(area: Area) -> Area:
+        return tuple(tuple((round(u - x, 3), round(v - y, 3)) for u, v in ring) for ring in area)
+
+    walls, windows = (
+        {key: tuple(map(move_area, areas)) for key, areas in plans.items()} for plans in (near.walls, near.windows)
+    )
+    text = fill("The model stands far from its origin: {x:,.0f} m were taken off every X, and {y:,.0f} m off every Y.",
+                x=x, y=y)  # fmt: skip
+    return replace(
+        near, pieces=move(near.pieces), doors=move(near.doors), stairs=move(near.stairs), walls=walls, windows=windows,
+        spaces=tuple(replace(one, area=move_area(one.area)) for one in near.spaces), shift=(x, y),
+        remarks=(*near.remarks, text),
+    )  # fmt: skip
+
+
+def _list_points(model: BuildingModel) -> Iterator[Point]:
+    placed: Sequence[Piece | Door | Stair] = (*model.pieces, *model.doors, *model.stairs)
+    yield from ((one.x, one.y) for one in placed)
+    for area in (*(one.area for one in model.spaces), *chain.from_iterable(model.walls.values())):
+        yield from area[0]

@@ -10,9 +10,8 @@ where that is wide enough.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import groupby, pairwise
 from typing import Any, Literal, NamedTuple
 
@@ -159,7 +158,7 @@ class Link:
     overall: float = 0.0
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True)
 class FloorPlan:
     """The plan of one storey: spaces with their polygons, walls and windows, furniture that stands on the floor."""
 
@@ -169,25 +168,15 @@ class FloorPlan:
     solids: tuple[shapely.Polygon, ...]
     footprints: tuple[shapely.Polygon, ...]
 
-    @cached_property
-    def tree(self) -> shapely.STRtree:
-        """Return the index of the polygons of spaces."""
-        return shapely.STRtree(self.polygons)
+    tree: shapely.STRtree = field(init=False)
+    solid_tree: shapely.STRtree = field(init=False)
+    piece_tree: shapely.STRtree = field(init=False)
+    by_key: dict[str, shapely.Polygon] = field(init=False)
 
-    @cached_property
-    def solid_tree(self) -> shapely.STRtree:
-        """Return the index of walls and windows."""
-        return shapely.STRtree(self.solids)
-
-    @cached_property
-    def piece_tree(self) -> shapely.STRtree:
-        """Return the index of the furniture."""
-        return shapely.STRtree(self.footprints)
-
-    @cached_property
-    def by_key(self) -> dict[str, shapely.Polygon]:
-        """Return the plans of the spaces by their keys."""
-        return {space.key: polygon for space, polygon in zip(self.spaces, self.polygons, strict=True)}
+    def __post_init__(self) -> None:
+        trees = (shapely.STRtree(some) for some in (self.polygons, self.solids, self.footprints))
+        self.tree, self.solid_tree, self.piece_tree = trees
+        self.by_key = {space.key: polygon for space, polygon in zip(self.spaces, self.polygons, strict=True)}
 
     def solids_near(self, shape: BaseGeometry) -> BaseGeometry:
         """Return walls and windows that touch a shape, as one."""
@@ -375,19 +364,14 @@ class Room:
         return sign * u, sign * v
 
 
-def build_rooms(plan: FloorPlan, links: Iterable[Link]) -> dict[str, Room]:
+def build_rooms(plan: FloorPlan, links: Sequence[Link]) -> dict[str, Room]:
     """Return the rooms of a storey by the keys of their spaces."""
-    of_space: dict[str, list[Link]] = {space.key: [] for space in plan.spaces}
-    for link in links:
-        for key in link.spaces:
-            if key in of_space:
-                of_space[key].append(link)
     rooms = {}
     for space, polygon in zip(plan.spaces, plan.polygons, strict=True):
         floor = _widest(polygon.difference(plan.solids_near(polygon)), polygon)
         pieces = shapely.union_all([plan.footprints[at] for at in sorted(plan.piece_tree.query(polygon))])
         free = floor if pieces.is_empty else _widest(floor.difference(pieces), floor)
-        rooms[space.key] = Room(space, polygon, floor, free, tuple(of_space[space.key]))
+        rooms[space.key] = Room(space, polygon, floor, free, tuple(one for one in links if space.key in one.spaces))
     return rooms
 
 

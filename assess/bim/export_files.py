@@ -28,7 +28,7 @@ from assess.bim.export_results import (
     say_scenario,
 )
 from assess.bim.export_topics import Pair, Topics, list_entries, write_topics
-from assess.bim.ifc_file import check_installed, check_model, unreadable
+from assess.bim.ifc_model import check_installed, check_model, unreadable
 from assess.bim.model_process import run_apart
 from assess.details import DETAILS
 from assess.errors import ModelError

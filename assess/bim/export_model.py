@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from assess.bim.ifc_file import find_unit, join_parts, read_with
+from assess.bim.ifc_model import find_unit, join_parts, read_with
 
 PROPERTY_SET = "Assess_OverturningRisk"
 """Name of the set; the prefix Pset_ is that of buildingSMART."""

@@ -9,8 +9,7 @@ from pathlib import Path, PurePath
 
 from assess.bim.building_model import BuildingModel
 from assess.bim.cobie import read_cobie
-from assess.bim.ifc_file import check_installed, check_model, is_model, unreadable
-from assess.bim.ifc_model import read_model
+from assess.bim.ifc_model import check_installed, check_model, is_model, read_model, unreadable
 from assess.bim.import_workbook import ENDING, ImportedBuilding, describe
 from assess.bim.model_process import run_apart
 from assess.bim.model_rows import Drafts, list_building

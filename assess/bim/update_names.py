@@ -120,26 +120,17 @@ def match_alike(
     stems: dict[str, list[int]] = {}
     for at, one in enumerate(own):
         stems.setdefault(one.stem, []).append(at)
-
-    def is_namesake(one: Named, other: Named) -> bool:
-        return key(one.name) == key(other.name)
-
-    def is_alike(one: Named, other: Named) -> bool:
-        return is_same(one.content, other.content)
-
-    def is_equal(one: Named, other: Named) -> bool:
-        return is_namesake(one, other) and is_alike(one, other)
-
     found: dict[int, int] = {}
-    steps = [(is_equal, stems), (is_alike, stems), (is_namesake, stems), *[(is_alike, None)] * by_content]
-    for fits, near in steps:
+    last = [(False, True, True)] if by_content else []
+    for by_name, by_what, of_any_name in ((True, True, False), (False, True, False), (True, False, False), *last):
         taken = set(found.values())
-        for at in (at for at in range(len(model)) if at not in found):
-            among = range(len(own)) if near is None else near.get(model[at].stem, ())
-            best = next((it for it in among if it not in taken and fits(model[at], own[it])), None)
-            if best is not None:
-                found[at] = best
-                taken.add(best)
+        for at, one in ((at, one) for at, one in enumerate(model) if at not in found):
+            for other in range(len(own)) if of_any_name else stems.get(one.stem, ()):
+                is_namesake = not by_name or key(one.name) == key(own[other].name)
+                if other not in taken and is_namesake and (not by_what or is_same(one.content, own[other].content)):
+                    found[at] = other
+                    taken.add(other)
+                    break
     return found
 
 
