@@ -21,6 +21,7 @@ from assess.web.request_errors import CONFLICT, RequestError
 from assess.web.snapshot import Snapshot
 from assess.workbook.kept_files import KeptFiles
 from assess.workbook.read import open_workbook, parse_workbook
+from assess.workbook.schema import ITEMS
 from assess.workbook.store import Workbook, is_same
 
 __all__ = ["Book", "ChangedOutsideError", "EditsRefused", "Snapshot", "VersionError"]
@@ -212,7 +213,8 @@ class Book:
             if written[0] is now.workbook:
                 return now, written[1]
             if live is None:
-                live = find_live_rows(opened.tables, opened.inventory)
+                is_live = bool(self.sheets[ITEMS.name].live)
+                live = find_live_rows(opened.tables, opened.inventory) if is_live else {}
             data = now.workbook.data
             if now.workbook.differs(opened.workbook):
                 results = find_results(now.workbook, now.tables, now.inventory, live)
