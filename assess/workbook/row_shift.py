@@ -224,6 +224,7 @@ class PartShift:
         """Row and column of the cell that is read, as before."""
         self.moved_row: int | None = 0
         self.shared: dict[str, tuple[int, int, str]] = {}
+        self.columns: dict[int, tuple[list[str], list[str]]] = {}
         self.new_rows = ""
         self.taken: list[Area] = []
         """The areas of validations, of which no two may overlap."""
@@ -446,9 +447,53 @@ class PartShift:
             name == "definedName" and re.search("_xlnm.(Print_Area|_FilterDatabase)", attributes)
         ):
             return text
+        if name == "f" and self.is_own and self.moved_row:
+            return self._move_own(text)
         formula = unescape(text)
         moved = shift_formula(formula, self.sheet, self.is_own and name != "definedName", self.move)
         return text if moved == formula else escape(moved, quote=False)
+
+    def _move_own(self, text: str) -> str:
+        """Return the formula of the cell that is read, moved.
+
+        Most formulas of a column are alike but for the number of their own row: such a one is taken apart once.
+        """
+        row, column = self.place
+        known = self.columns.get(column)
+        if known is None or str(row).join(known[0]) != text:
+            known = self.columns[column] = self._take_apart(unescape(text), row)
+        if known[1]:
+            return str(self.moved_row).join(known[1])
+        return escape(shift_formula(unescape(text), self.sheet, True, self.move), quote=False)
+
+    def _take_apart(self, formula: str, row: int) -> tuple[list[str], list[str]]:
+        """Return what stands between the numbers of its own row in a formula, before and after the shift.
+
+        Nothing after it where the formula refers to other rows without $: these move in their own way.
+        """
+        before, after, end = [""], [""], 0
+        for found in _REFERENCE.finditer(formula):
+            between, token, end = formula[end : found.start()], found[0], found.end()
+            name, *ends = found.groups()
+            parts = [part for one in ends if one and (part := _PARTS.fullmatch(one))]
+            relative = [part for part in parts if part[2] and not part[3]]
+            if name is not None or not relative:
+                before[-1] += between + token
+                after[-1] += between + shift_formula(token, self.sheet, True, self.move)
+                if name is not None and relative:
+                    return before, []
+            elif len(relative) < len(parts) or any(part[4] != str(row) for part in relative):
+                return before, []
+            else:
+                texts = [between + parts[0][1] + parts[0][2], *(f":{part[1]}{part[2]}" for part in parts[1:])]
+                for one in texts:
+                    before[-1] += one
+                    after[-1] += one
+                    before.append("")
+                    after.append("")
+        before[-1] += formula[end:]
+        after[-1] += formula[end:]
+        return [escape(one, quote=False) for one in before], [escape(one, quote=False) for one in after]
 
 
 _SHAPE = re.compile(r"<v:shape\b.*?</v:shape>", re.DOTALL)

@@ -25,6 +25,7 @@ from tests.benchmarks import (
     report,
     rocking,
     routes,
+    storing,
     verified,
     whole_runs,
 )
@@ -32,7 +33,7 @@ from tests.benchmarks import (
 USUAL: Mapping[str, Callable[[Path], Iterator[str]]] = {
     "portfolio": portfolio.rows, "report": report.rows, "verified": verified.rows, "routes": routes.rows,
     "cancel": cancel.rows, "live_answers": live_answers.rows, "models": models.rows, "generating": generating.rows,
-    "beam_floors": beam_floors.rows, "rocking": rocking.rows,
+    "beam_floors": beam_floors.rows, "rocking": rocking.rows, "storing": storing.rows,
 }  # fmt: skip
 LONG: Mapping[str, Callable[[Path], Iterator[str]]] = {
     "bounds": bounds.rows, "portfolio_growth": portfolio_growth.rows, "portfolio_growth_small": portfolio_growth.small,
