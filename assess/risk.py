@@ -6,39 +6,34 @@ which class a limit itself belongs; here it belongs to the higher one.
 
 import math
 from enum import IntEnum
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 
 class RiskClass(IntEnum):
-    """Classes of the chance of overturning, in rising order. Each has a word and a symbol, never a colour alone."""
+    """Classes of the chance of overturning, in rising order: each with a word and a symbol, never a colour alone.
 
-    LOW = 0
-    MEDIUM = 1
-    HIGH = 2
-    VERY_HIGH = 3
+    The backgrounds (`fill`), light to dark, are distinct without red and green, and in grey; `ink` is text on them.
+    """
 
-    @property
-    def word(self) -> str:
-        """The class in words, ``very high``."""
-        return ("low", "medium", "high", "very high")[self]
+    word: str
+    symbol: str
+    fill: str
+    ink: str
 
-    @property
-    def symbol(self) -> str:
-        """A shape that identifies the class without colour."""
-        return ("○", "◇", "▲", "■")[self]
+    LOW = 0, "low", "○", "#eaf3fb", "#1c1c1c"
+    MEDIUM = 1, "medium", "◇", "#f7cf5c", "#1c1c1c"
+    HIGH = 2, "high", "▲", "#db7133", "#1c1c1c"
+    VERY_HIGH = 3, "very high", "■", "#8c1d3f", "#ffffff"
 
-    @property
-    def fill(self) -> str:
-        """Background colour, light to dark: distinct without red and green, and in grey."""
-        return ("#eaf3fb", "#f7cf5c", "#db7133", "#8c1d3f")[self]
-
-    @property
-    def ink(self) -> str:
-        """Colour of text on `fill`."""
-        return ("#1c1c1c", "#1c1c1c", "#1c1c1c", "#ffffff")[self]
+    def __new__(cls, value: int, *given: str) -> Self:
+        """Return a class with its word, symbol and colours."""
+        one = int.__new__(cls, value)
+        one._value_ = value
+        one.word, one.symbol, one.fill, one.ink = given
+        return one
 
     @property
     def label(self) -> str:

@@ -41,15 +41,13 @@ def answer_signals() -> None:
         heard.append(number)
         end()
 
-    def hide_interrupts(error: "sys.UnraisableHookArgs") -> None:
-        """Show what a destructor raised, unless it was interrupted."""
-        if not (heard and issubclass(error.exc_type, KeyboardInterrupt)):
-            sys.__unraisablehook__(error)
-
     for number in NUMBERS:
         if signal.getsignal(number) not in (signal.SIG_IGN, None):
             signal.signal(number, stop)
-    sys.unraisablehook = hide_interrupts
+    # what a destructor raised is shown, unless it was interrupted
+    sys.unraisablehook = lambda error: (
+        None if heard and issubclass(error.exc_type, KeyboardInterrupt) else sys.__unraisablehook__(error)
+    )
 
 
 def start() -> None:

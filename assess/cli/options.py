@@ -24,16 +24,11 @@ FIGURES = (".png", ".svg", ".pdf")
 
 
 def one_of(values: Sequence[str]) -> Callable[[str], list[str]]:
-    """Return what completes one of some words, in capitals or not.
-
-    A space in one becomes a hyphen, so that no shell has to quote it.
-    """
-
-    def complete(incomplete: str) -> list[str]:
-        plain = [value.replace(" ", "-").lower() for value in values]
-        return [f"{incomplete}{value[len(incomplete) :]}" for value in plain if value.startswith(incomplete.lower())]
-
-    return complete
+    """Return what completes one of some words, in capitals or not; spaces become hyphens, for the shell."""
+    plain = [value.replace(" ", "-").lower() for value in values]
+    return lambda incomplete: [
+        f"{incomplete}{value[len(incomplete) :]}" for value in plain if value.startswith(incomplete.lower())
+    ]
 
 
 def list_of(values: Sequence[str]) -> Callable[[str], list[str]]:

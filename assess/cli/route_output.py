@@ -142,12 +142,12 @@ class Verdict:
                 pieces = _name([piece.item for piece in one.causes], VERDICT_PIECES)
                 blame = f"because of {pieces}" if one.causes else "blocked with nothing fallen"
                 named.append(f"{_quote(one.route)} ({blame})")
-            said.append(f"{where} {words.name_first(named, VERDICT_ROUTES)} {_reaches(first)} {level}{more}.")
+            reach = "reaches" if len(first) == 1 else "reach"
+            said.append(f"{where} {words.name_first(named, VERDICT_ROUTES)} {reach} {level}{more}.")
         if self.anchored_at_g is not None:
             routes = _name([one.route for one in self.anchored], VERDICT_ROUTES)
-            said.append(
-                f"If the anchors fail, {routes} {_reaches(self.anchored)} {level} from {self.anchored_at_g:.4g} g."
-            )
+            reach = "reaches" if len(self.anchored) == 1 else "reach"
+            said.append(f"If the anchors fail, {routes} {reach} {level} from {self.anchored_at_g:.4g} g.")
         if self.lower_bounds:
             said.append(f"The chances of {_name(self.lower_bounds, VERDICT_ROUTES)} are lower bounds.")
         parts = [one for one in self.evaluated if one.unevaluated]
@@ -170,10 +170,6 @@ def _name(names: Sequence[str], most: int) -> str:
 
 def _quote(name: str) -> str:
     return repr(words.cut(name, LONGEST))
-
-
-def _reaches(routes: Sequence[RouteFragility]) -> str:
-    return "reaches" if len(routes) == 1 else "reach"
 
 
 @dataclass(frozen=True, eq=False)

@@ -31,8 +31,7 @@ from assess.i18n import LANGUAGES, count, fill, join, load_catalogue
 from assess.model import Inventory
 from assess.motion.site_ground import GroundField
 from assess.portfolio.building_rows import Origin, spell_use
-from assess.portfolio.index_file import IndexRow
-from assess.portfolio.sources import Source
+from assess.portfolio.sources import IndexRow, Source
 from assess.units import LENGTH
 from assess.workbook.catalogue import catalogue_rows
 from assess.workbook.names import key

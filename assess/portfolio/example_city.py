@@ -20,7 +20,7 @@ from assess.delivery.deliver import find_digest
 from assess.delivery.folders import NEW, moving, staging
 from assess.errors import InputError
 from assess.portfolio.background import read_background
-from assess.portfolio.index_file import COLUMNS
+from assess.portfolio.sources import COLUMNS
 from assess.portfolio.table_schemas import MADE_UP
 from assess.text import plain_line
 from assess.workbook.catalogue import read_catalogue

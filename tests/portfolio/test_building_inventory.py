@@ -8,8 +8,7 @@ from assess.bim.cobie import read_cobie
 from assess.bim.import_workbook import build_workbook
 from assess.errors import InputError, WorkbookError
 from assess.portfolio.building_inventory import Quantity, _is_near, build_assumed, read_building, spread_pieces
-from assess.portfolio.index_file import IndexRow
-from assess.portfolio.sources import Source
+from assess.portfolio.sources import IndexRow, Source
 from assess.workbook.read import read_inventory
 from tests.bim.cobie_files import one_type, write_cobie
 from tests.workbooks import write_sheets

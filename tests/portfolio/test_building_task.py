@@ -17,8 +17,7 @@ from assess.portfolio.building_task import (
     run_task,
     write_part,
 )
-from assess.portfolio.index_file import IndexRow
-from assess.portfolio.sources import Source, find_sources
+from assess.portfolio.sources import IndexRow, Source, find_sources
 from assess.portfolio.table_schemas import TABLES
 from assess.settings import Settings
 from tests.portfolio.staged import StagedGround, write_building, write_city

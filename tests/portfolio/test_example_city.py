@@ -20,7 +20,7 @@ from assess.portfolio.example_city import (
     list_buildings,
     write_example_city,
 )
-from assess.portfolio.index_file import COLUMNS
+from assess.portfolio.sources import COLUMNS
 from tests.workbooks import UNVERIFIED
 
 

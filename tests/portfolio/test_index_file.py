@@ -3,7 +3,7 @@
 import pytest
 
 from assess.errors import InputError
-from assess.portfolio.index_file import read_index
+from assess.portfolio.sources import read_index
 
 HEAD = "path,building,latitude,longitude,use,storeys,height_m,floor_area_m2,ground_pga_g\n"
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from assess.portfolio.index_file import COLUMNS
+from assess.portfolio.sources import COLUMNS
 from assess.portfolio.table_schemas import TABLES
 from tests.portfolio.city_samples import make_view
 
