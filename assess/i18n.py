@@ -75,10 +75,7 @@ def speaking(catalogue: Catalogue) -> Iterator[None]:
 
 
 def gettext(text: str, /, **values: Any) -> str:
-    """Return a text in the language in use, with `values` put into its ``{}``.
-
-    A `Text` is translated with its parts.
-    """
+    """Return a text, a `Text` with its parts, in the language in use, with `values` put into its ``{}``."""
     return _say(_FORMATTER, text, "", 1, values)
 
 
@@ -110,14 +107,15 @@ def _say(formatter: "_Formatter", one: str, many: str, n: int, values: Mapping[s
     if isinstance(one, Text):
         values = one.values
         many, n, one = one.many, values.get("n", 1), one.template
-    found = formatter.prepare(spoken().find(one, many, n))
+    found = spoken().find(one, many, n)
+    if formatter is _MARKUP and "<" not in found:
+        from markupsafe import escape
+
+        found = str(escape(found))
     return formatter.vformat(found, (), values) if values else found
 
 
 class _Formatter(string.Formatter):
-    def prepare(self, text: str) -> str:
-        return text
-
     def format_field(self, value: Any, format_spec: str) -> str:
         if isinstance(value, Text):
             value = gettext(value)
@@ -128,11 +126,6 @@ class _Formatter(string.Formatter):
 
 class _MarkupFormatter(_Formatter):
     """Likewise for HTML: everything is escaped but the tags of a text that has some."""
-
-    def prepare(self, text: str) -> str:
-        from markupsafe import escape
-
-        return text if "<" in text else str(escape(text))
 
     def format_field(self, value: Any, format_spec: str) -> str:
         from markupsafe import escape

@@ -208,28 +208,25 @@ def damaged() -> PictureError:
 def _read_size(data: bytes) -> tuple[int, int]:
     if len(data) > MOST_BYTES:
         raise PictureError(fill("it is larger than {most} MB. Save it smaller", most=MOST_BYTES >> 20))
+    size = (0, 0)
     if data.startswith(PNG):
-        size = struct.unpack_from(">II", data, 16) if data[12:16] == b"IHDR" and len(data) >= 24 else (0, 0)
+        if data[12:16] == b"IHDR" and len(data) >= 24:
+            width, height = struct.unpack_from(">II", data, 16)
+            size = width, height
     elif data.startswith(JPEG):
-        size = _read_frame(data)
+        at = 2
+        while at + 9 <= len(data) and data[at] == 0xFF and data[at + 1] not in {0xD9, 0xDA}:
+            marker = data[at + 1]
+            if marker in _FRAMES:
+                height, width = struct.unpack_from(">HH", data, at + 5)
+                size = width, height
+                break
+            if marker == 0xFF or marker in _ALONE:  # the first fills up
+                at += 1 if marker == 0xFF else 2
+            else:
+                at += 2 + int(struct.unpack_from(">H", data, at + 2)[0])
     else:
         raise PictureError(fill("it is no PNG or JPEG picture. Save it as PNG or JPEG"))
     if not (size[0] and size[1]):
         raise damaged()
     return size
-
-
-def _read_frame(data: bytes) -> tuple[int, int]:
-    at = 2
-    while at + 9 <= len(data) and data[at] == 0xFF:
-        marker = data[at + 1]
-        if marker in _FRAMES:
-            height, width = struct.unpack_from(">HH", data, at + 5)
-            return width, height
-        if marker == 0xFF or marker in _ALONE:  # the first fills up
-            at += 1 if marker == 0xFF else 2
-        elif marker in {0xD9, 0xDA}:
-            break
-        else:
-            at += 2 + int(struct.unpack_from(">H", data, at + 2)[0])
-    return 0, 0
