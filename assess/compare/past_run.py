@@ -232,7 +232,6 @@ def _refuse(name: str) -> Never:
 
 
 def _describe_fault(file: Path, text: str, error: Exception) -> Text:
-
     whole = text.strip()
     if isinstance(error, UnicodeDecodeError) or (whole and not whole.startswith(("{", "["))):
         return fill("{path} is not a JSON file: name a {name} written by assess, or its folder.", path=file, name=DATA)
@@ -410,7 +409,6 @@ def _read_chance(row: Part) -> PastChance:
 
 
 def _read_unique(rows: Sequence[Part], read: Callable[[Part], _Row], name: Callable[[_Row], Any]) -> tuple[_Row, ...]:
-
     found: dict[Any, _Row] = {}
     for row in rows:
         one = read(row)

@@ -8,8 +8,8 @@ headings and the words that formulas compare are in the language in use; formula
 
 import datetime
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
+from typing import Any
 
 from assess.i18n import fill
 from assess.i18n import gettext as _
@@ -20,9 +20,9 @@ from assess.report.say.ground import name_source
 from assess.report.say.route import list_unfixable
 from assess.report.say.simulation import say_scenario
 from assess.report.xlsx import floors_sheet, items_sheet, list_sheets, route_sheets, summary_sheet, work_sheet
-from assess.report.xlsx.pen import write_sheets
+from assess.report.xlsx.pen import Pen, write_sheets
 
-SHEETS: tuple[tuple[str, Callable[..., None], Callable[[Content], bool] | None], ...] = (
+SHEETS: tuple[tuple[str, Callable[[Pen, Any, Content], None], Callable[[Content], bool] | None], ...] = (
     (fill("Summary"), summary_sheet.write_summary, None),
     (fill("Work list"), work_sheet.write_work, None),
     (fill("Floors"), floors_sheet.write_floors, None),
@@ -54,11 +54,10 @@ def write_xlsx(content: Content, path: Path, progress: Progress = SILENT) -> Non
         conditions.append(_("motion × {scale:g}", scale=run.settings.scale))
     if run.settings.ideal:
         conditions.append(_("if exactly this motion recurred"))
-
     sheets = [(title, write) for title, write, is_there in SHEETS if is_there is None or is_there(content)]
     write_sheets(
         path,
-        [(str(title), _(title), partial(write, content=content)) for title, write in sheets],
+        [(str(title), _(title), lambda pen, page, write=write: write(pen, page, content)) for title, write in sheets],
         title=_("Furniture in earthquakes: {title}", title=content.title[:200]),
         created=datetime.datetime.fromisoformat(report_date()),
         texts=(words.cut(content.title, 80), ", ".join(conditions), say_scenario(run).rstrip(".")),

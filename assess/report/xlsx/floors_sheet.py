@@ -42,7 +42,6 @@ def list_lines(results: Results) -> list[MotionLine]:
     peak = attrgetter({"pfa": "pfa_g", "pfv": "pfv_cm_s"}[results.formula.ruled_by])
 
     def sort(motions: Sequence[MotionRow]) -> list[MotionRow]:
-
         largest = max(motions, key=lambda one: round(peak(one) or 0.0, 9), default=None)
         return sorted(motions, key=lambda one: one is not largest)
 

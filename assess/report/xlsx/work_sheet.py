@@ -77,14 +77,11 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
 
 
 def _list_columns(schedule: Schedule) -> list[Column]:
-
     def of_entry(name: str, width: int, *, only_first: bool = False, align: str = "") -> Column:
         """Return a column of the whole entry, which stands with the most urgent part of it alone if `only_first`."""
         field = schedule_fields(ScheduleRow)[name]
-
-        return of_field(field, key=name, width=width, align=align,
-                        read=lambda one: field.read(one.entry.row) if one.is_first or not only_first else None
-                        )  # fmt: skip
+        return of_field(field, key=name, width=width, align=align, read=lambda one: (
+            field.read(one.entry.row) if one.is_first or not only_first else None))  # fmt: skip
 
     own = {
         name: of_field(field, key=name, read=partial(lambda field, one: field.read(one.row), field),
