@@ -8,6 +8,7 @@ headings and the words that formulas compare are in the language in use; formula
 
 import datetime
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +58,10 @@ def write_xlsx(content: Content, path: Path, progress: Progress = SILENT) -> Non
     sheets = [(title, write) for title, write, is_there in SHEETS if is_there is None or is_there(content)]
     write_sheets(
         path,
-        [(str(title), _(title), lambda pen, page, write=write: write(pen, page, content)) for title, write in sheets],
+        [
+            (str(title), _(title), partial(lambda write, pen, page: write(pen, page, content), write))
+            for title, write in sheets
+        ],
         title=_("Furniture in earthquakes: {title}", title=content.title[:200]),
         created=datetime.datetime.fromisoformat(report_date()),
         texts=(words.cut(content.title, 80), ", ".join(conditions), say_scenario(run).rstrip(".")),
