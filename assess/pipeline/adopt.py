@@ -21,7 +21,7 @@ from assess.arrays import BoolArray, FloatArray
 from assess.methods import ALIKE, Alike, Cases, Method, Outcome, adopted_formula, simulation
 from assess.methods.simulate import interval_width
 from assess.model import AXES, Inventory, Item
-from assess.pipeline.floor_demand import Demand
+from assess.pipeline.demand import Demand
 from assess.results import BASES
 from assess.risk import RiskClass, classify_all, wilson_interval
 from assess.rocking.block import STOCKY

@@ -34,8 +34,8 @@ from assess.rates import evaluate_rate, integrate_table, list_remarks
 from assess.risk import NORMAL_95
 from assess.rocking.draws import CUT, MOTION
 from assess.routes.chances import find_chances, to_array
+from assess.routes.evaluate import list_rooms
 from assess.routes.network import IsBlocked
-from assess.routes.rooms import list_rooms
 from assess.routes.scene import Scene
 from assess.settings import AUTO, RUNS
 from assess.units import GRAVITY, ROUNDING

@@ -13,7 +13,7 @@ from assess.errors import Problem
 from assess.methods import Cases, Joint, Method, Outcome, simulation
 from assess.model import Axis, Inventory
 from assess.pipeline.adopt import Adoption, build_falls
-from assess.pipeline.floor_demand import Demand
+from assess.pipeline.demand import Demand
 from assess.routes.chances import Falls
 from assess.settings import Settings
 

@@ -25,7 +25,7 @@ from assess.arrays import FloatArray
 from assess.model import NEAR_AXIS, Building, angle_between
 from assess.motion.record import Motion, Record, treat
 from assess.motion.rows import GROUP
-from assess.pipeline.floor_demand import Demand, Demands, Drawn
+from assess.pipeline.demand import Demand, Demands, Drawn
 from assess.progress import SILENT, Progress
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ it does not. No class or formula of an assessment enters.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal, TypeVar, get_args
@@ -23,10 +23,10 @@ from assess.arrays import BoolArray, FloatArray
 from assess.errors import InputError
 from assess.fragility import Fragility, fit_fragility
 from assess.i18n import Text, fill
-from assess.model import AXES, Axis, Inventory, Item
+from assess.model import AXES, Axis, Item
 from assess.pipeline.adopt import is_square
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.floor_demand import Demand
+from assess.pipeline.demand import Demand
 from assess.pipeline.levels import RockedLevels, Sweep
 from assess.pipeline.verify import choose_motions
 from assess.progress import SILENT, Progress
@@ -64,7 +64,6 @@ _Choice = TypeVar("_Choice", bound=str)
 class FloorMotions:
     """The motions of one floor along one axis, before any factor.
 
-    * `demand`: of the floor.
     * `mean_pfa`, `mean_pfv`: means over the motions [m/s2], [m/s].
     * `is_assumed`, `is_unknown`, `is_weak`: whether ground motion and building are drawn, whether nothing is known of
       the building, and whether the motions are weaker than the floor's. Under the latter two a fragility may be too
@@ -204,30 +203,24 @@ def find_piece_fragilities(
         raise InputError.about("no piece can rock: all are too stocky, or there are none.")
 
     def find() -> PieceFragilities:
-        chosen = np.isin(assessment.case_item, rocked)
-        study = _Study(
-            sweep=Sweep(
-                assessment=assessment,
-                cases=choose_motions(
-                    assessment.cases,
-                    chosen,
-                    assessment.case_demand,
-                    assessment.demands,
-                    assessment.inventory,
-                    settings,
-                    None,
-                ),
-                peaks=np.array([one.pfa if im == "pfa" else one.pfv for one in assessment.case_demand]),
-                settings=settings,
-                dispersion=None if settings.ideal else np.zeros(assessment.case_item.size),
-                jobs=jobs,
-                progress=progress,
+        inventory, demands, case_item = assessment.inventory, assessment.case_demand, assessment.case_item
+        groups: dict[object, list[int]] = {}  # which items have one curve, in the order of the workbook
+        for at in rocked.tolist():
+            item = inventory.items[at]
+            shape = (item.breadth, item.height, item.centre_of_gravity)
+            mark: object = at if by == "item" else key(item.type) if item.type else shape
+            groups.setdefault(mark, []).append(at)
+        sweep = Sweep(
+            assessment=assessment,
+            cases=choose_motions(
+                assessment.cases, np.isin(case_item, rocked), demands, assessment.demands, inventory, settings, None
             ),
-            groups=_group(assessment.inventory, rocked, by),
-            unit=UNITS[im],
-        )
+            peaks=np.array([one.pfa if im == "pfa" else one.pfv for one in demands]), settings=settings,
+            dispersion=None if settings.ideal else np.zeros(case_item.size), jobs=jobs, progress=progress,
+        )  # fmt: skip
+        study = _Study(sweep, list(groups.values()), UNITS[im])
         every, fallen = study.rock(levels)
-        stocky = np.unique(assessment.case_item[assessment.cases.is_stocky])
+        stocky = np.unique(case_item[assessment.cases.is_stocky])
         return PieceFragilities(
             by=by,
             im=im,
@@ -235,7 +228,7 @@ def find_piece_fragilities(
             seed=settings.seed,
             has_drawn_pieces=assessment.cases.uncertainty.piece and not settings.ideal,
             curves=tuple(study.build_curve(group, every, fallen[group], by) for group in study.groups),
-            stocky=tuple(assessment.inventory.items[at] for at in stocky),
+            stocky=tuple(inventory.items[at] for at in stocky),
         )
 
     return progress.wait_for(find)
@@ -248,21 +241,10 @@ def _choose(name: str, text: _Choice, choices: tuple[str, ...]) -> _Choice:
     return text
 
 
-def _group(inventory: Inventory, rocked: Iterable[int], by: By) -> list[list[int]]:
-    """Return which items have one curve, in the order of the workbook."""
-    groups: dict[object, list[int]] = {}
-    for at in map(int, rocked):
-        item = inventory.items[at]
-        shape = (item.breadth, item.height, item.centre_of_gravity)
-        mark: object = at if by == "item" else key(item.type) if item.type else shape
-        groups.setdefault(mark, []).append(at)
-    return list(groups.values())
-
-
 # ---------------------------------------------------------------- rocking
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Study:
     """How often the items of `groups` fall; `unit` is that of the levels.
 
@@ -283,9 +265,16 @@ class _Study:
             levels, last = np.array(given), len(given) - 1
             spans = [(0, last, last) for _ in self.groups]
         else:
-            rungs = [self._span(group) for group in self.groups]
+            rungs, cases = [], self.sweep.cases
+            for group in self.groups:  # the rungs, counted from 1, at or just below three levels
+                own = np.isin(self.sweep.assessment.case_item, group)
+                begin = cases.threshold[own] * GRAVITY * self.sweep.peaks[own] / cases.pfa[own] / self.unit
+                ends = LOWEST * (begin * cases.still[own] / STILL).min(), HIGHEST * begin.max(), FARTHEST * begin.max()
+                low, top, end = (math.floor(len(RUNGS) * math.log10(one)) for one in ends)
+                rungs.append((low, top + 1, end + 1))
             first, end = min(low for low, _, _ in rungs), max(end for _, _, end in rungs)
-            levels = np.array([_read_rung(rung) * self.unit for rung in range(first, end + 1)])
+            decades = (divmod(rung, len(RUNGS)) for rung in range(first, end + 1))
+            levels = np.array([float(f"{RUNGS[at]}e{decade}") * self.unit for decade, at in decades])
             spans = [(low - first, top - first, end - first) for low, top, end in rungs]
         fallen = np.full((len(self.sweep.assessment.inventory.items), levels.size), np.nan)
         ranges = [(low, top) for low, top, _ in spans]
@@ -293,29 +282,22 @@ class _Study:
             wanted = np.zeros(fallen.shape, dtype=np.bool_)
             for group, (start, stop) in zip(self.groups, ranges, strict=True):
                 wanted[group, start : stop + 1] = True
-            self._rock(levels, wanted, fallen)
+            used = np.flatnonzero(wanted.any(axis=0))
+            rocked = self.sweep.rock(levels[used], wanted[self.sweep.assessment.case_item][:, used])
+            for number, one in enumerate(rocked):
+                if one.own.size and number not in self.motions:
+                    made, demand = self.sweep.cases.ensembles[number], self.sweep.assessment.case_demand[one.own[0]]
+                    self.motions[number] = FloorMotions(
+                        demand=demand, mean_pfa=one.pfa, mean_pfv=one.pfv, is_assumed=made.is_assumed,
+                        is_unknown=made.is_unknown, is_weak=one.is_weak,
+                    )  # fmt: skip
+            rows, columns = np.nonzero(wanted[:, used])
+            fallen[rows, used[columns]] = self._count(rocked, used.size)[rows, columns]
             for number, (group, (_, _, end)) in enumerate(zip(self.groups, spans, strict=True)):
                 top = ranges[number][1]
                 is_enough = float(fallen[group, top].mean()) / int(self.sweep.settings.runs) >= NEARLY_ALL
                 ranges[number] = (top + 1, top if is_enough else min(top + MORE_RUNGS, end))
         return levels, fallen
-
-    def _span(self, group: Sequence[int]) -> tuple[int, int, int]:
-        """Return the rungs of a group's lowest level, of its highest to begin with, and of its last."""
-        cases, own = self.sweep.cases, np.isin(self.sweep.assessment.case_item, group)
-        start = cases.threshold[own] * GRAVITY * self.sweep.peaks[own] / cases.pfa[own] / self.unit
-        low, high = float((start * cases.still[own] / STILL).min()), float(start.max())
-        return _find_rung(LOWEST * low), _find_rung(HIGHEST * high) + 1, _find_rung(FARTHEST * high) + 1
-
-    def _rock(self, levels: FloatArray, wanted: BoolArray, fallen: FloatArray) -> None:
-        """Put into `fallen` (items, l) how often items fall at the levels that are `wanted`, (items, l)."""
-        used = np.flatnonzero(wanted.any(axis=0))
-        rocked = self.sweep.rock(levels[used], wanted[self.sweep.assessment.case_item][:, used])
-        for number, one in enumerate(rocked):
-            if one.own.size and number not in self.motions:
-                self.motions[number] = self._describe(number, int(one.own[0]), one)
-        rows, columns = np.nonzero(wanted[:, used])
-        fallen[rows, used[columns]] = self._count(rocked, used.size)[rows, columns]
 
     def _count(self, rocked: Sequence[RockedLevels], levels: int) -> FloatArray:
         """Return in how many draws each item falls at each level, (items, levels)."""
@@ -332,13 +314,6 @@ class _Study:
             fell = np.any(worst, axis=0) if is_square(items[at]) else _take_worst(worst)
             counts[at] = fell.sum(axis=1)
         return counts
-
-    def _describe(self, number: int, case: int, rocked: RockedLevels) -> FloorMotions:
-        made = self.sweep.cases.ensembles[number]
-        return FloorMotions(
-            demand=self.sweep.assessment.case_demand[case], mean_pfa=rocked.pfa, mean_pfv=rocked.pfv,
-            is_assumed=made.is_assumed, is_unknown=made.is_unknown, is_weak=rocked.is_weak,
-        )  # fmt: skip
 
     def build_curve(self, group: Sequence[int], levels: FloatArray, fallen: FloatArray, by: By) -> PieceFragility:
         """Return the curve of a group whose items fell so often at the levels, (m, l); NaN where they were not."""
@@ -364,13 +339,3 @@ def _take_worst(every: Sequence[BoolArray]) -> BoolArray:
     stacked = np.stack(every)
     worst = stacked.sum(axis=2).argmax(axis=0)
     return np.asarray(stacked[worst, np.arange(worst.size)])
-
-
-def _find_rung(value: float) -> int:
-    """Return the number of the preferred number at or just below a value, counted from 1."""
-    return math.floor(len(RUNGS) * math.log10(value))
-
-
-def _read_rung(number: int) -> float:
-    decade, at = divmod(number, len(RUNGS))
-    return float(f"{RUNGS[at]}e{decade}")

@@ -14,8 +14,7 @@ from assess.motion.assumed import CODE_FACTOR, CODE_POWER
 from assess.motion.record import treat
 from assess.motion.scenario import PGA_OF_SDS
 from assess.motion.site_ground import SiteGround
-from assess.pipeline.demand import find_shaking, find_site
-from assess.pipeline.floor_demand import Demand, Demands
+from assess.pipeline.demand import Demand, Demands, find_shaking, find_site
 from assess.pipeline.known_ground import find_ground
 from assess.units import GRAVITY, ROUNDING, VELOCITY
 
@@ -39,6 +38,17 @@ SOURCES = {
     "beam": fill("drawn buildings on the ground motion"),
 }
 """The sources of a floor's motion in words."""
+UNKNOWN = {
+    "unknown_building": (
+        fill(
+            "neither T1, Height, Storeys nor an Elevation is known, so that buildings of every period and floors of "
+            "every height are drawn"
+        ),
+        fill("Fill in Storeys in Building, and Elevation."),
+    ),
+    "unknown_height": (fill("its height in the building is not known and is drawn"), fill("Fill in Elevation.")),
+}
+"""What is not known of a floor, by its flag, and how to fix it."""
 
 
 def remark(
@@ -48,18 +58,33 @@ def remark(
 
     `unconfirmed` are the floors of which a piece was simulated and is unconfirmed.
     """
-    yield from _losses(demands)
+    for demand in (one for ones in demands.values() for one in ones if not one.is_borrowed):
+        if demand.loss > LOSS_TO_NOTE:
+            message = fill(
+                "treatment lowers the PFA of {record} from the file's {before:.3f} g to {pfa:.3f} g ({loss:.1%}).",
+                record=demand.name, before=demand.pfa / (1 - demand.loss) / GRAVITY, pfa=demand.pfa / GRAVITY,
+                loss=demand.loss,
+            )  # fmt: skip
+            much = demand.loss > LOSS_TO_WARN
+            fix = fill("If the file is corrected already, say so in it (plain CSV: # corrected: yes).") if much else ""
+            yield Problem("warning" if much else "note", "Floors", f"A{demand.floor.row}", message, fix)
     yield from _on_shaking(inventory, demands, scenario)
-    yield from remark_on_site(inventory, demands)
-    yield from _unknown(inventory, demands, unconfirmed)
+    yield from _on_site(inventory, demands)
+    for flag, (text, fix) in UNKNOWN.items():
+        found = [name for (name, _), parallel in demands.items() if any(flag in one.flags for one in parallel)]
+        floors = [floor for floor in inventory.floors if floor.floor in found]
+        if floors:
+            named, what = ", ".join(floor.floor for floor in floors), text
+            if flag == "unknown_building" and not unconfirmed.isdisjoint(found):
+                what = fill("{drawn}; classes stay unconfirmed", drawn=text)
+            message = nfill("floor {floors}: {what}.", "floors {floors}: {what}.", len(floors), floors=named, what=what)
+            yield Problem("warning", "Floors", floors[0].cell("elevation"), message, fix)
     if list_floors(demands, "profile") or list_floors(demands, "beam"):
-        yield from _above_roof(inventory, demands)
-        yield from _assumed_elevations(inventory, demands)
-        yield from _implausible(inventory, demands)
+        yield from _on_heights(inventory, demands)
     used = [
-        fill("{source} ({floors})", source=text, floors=", ".join(floors))
+        fill("{source} ({floors})", source=text, floors=", ".join(names))
         for source, text in SOURCES.items()
-        if (floors := list_floors(demands, source))
+        if (names := list_floors(demands, source))
     ]
     if len(used) > 1:
         message = fill("the motion of the floors comes from mixed sources: {sources}.", sources=join("; ", used))
@@ -75,9 +100,9 @@ def _on_shaking(inventory: Inventory, demands: Demands, scenario: str) -> Iterat
     for floor in inventory.floors:
         for axis in AXES:
             yield from _set_aside(floor, axis, demands, scenario)
-    yield from _ground_values(inventory, demands, scenario)
-    yield from remark_on_shaking(inventory, demands)
-    yield from _ground_velocity(inventory, demands)
+    yield from _on_ground_pga(inventory, demands, scenario)
+    yield from _on_assumed_shaking(inventory, demands)
+    yield from _on_ground_pgv(inventory, demands)
 
 
 def list_floors(demands: Demands, source: str) -> list[str]:
@@ -85,25 +110,7 @@ def list_floors(demands: Demands, source: str) -> list[str]:
     return list(dict.fromkeys(name for (name, _), ones in demands.items() if any(o.source == source for o in ones)))
 
 
-def _losses(demands: Demands) -> Iterator[Problem]:
-    """Report where treatment lowers the peak of a record noticeably."""
-    for demand in (one for ones in demands.values() for one in ones if not one.is_borrowed):
-        if demand.loss > LOSS_TO_NOTE:
-            before = demand.pfa / (1 - demand.loss)
-            message = fill(
-                "treatment lowers the PFA of {record} from the file's {before:.3f} g to {pfa:.3f} g ({loss:.1%}).",
-                record=demand.name,
-                before=before / GRAVITY,
-                pfa=demand.pfa / GRAVITY,
-                loss=demand.loss,
-            )
-            much = demand.loss > LOSS_TO_WARN
-            fix = fill("If the file is corrected already, say so in it (plain CSV: # corrected: yes).") if much else ""
-            yield Problem("warning" if much else "note", "Floors", f"A{demand.floor.row}", message, fix)
-
-
 def _set_aside(floor: Floor, axis: Axis, demands: Demands, scenario: str) -> Iterator[Problem]:
-    """Report the record and the given peaks of a floor that are not used; a warning where they are larger."""
     used = demands[floor.floor, axis]
     own, uses_given = {one.source for one in used if not one.is_borrowed}, fill("Scenario 'given' uses it.")
     largest, fastest = max(one.pfa for one in used), max(one.pfv for one in used)
@@ -139,18 +146,16 @@ def _severity(unused: float, used: float) -> Severity:
     return "warning" if unused > used * (1 + ROUNDING) else "note"
 
 
-def _above_roof(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
-    roof = find_ground(inventory).roof
+def _on_heights(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
+    """Check Elevation against the roof, Height against Storeys and floors, and T1 against the height."""
+    building, ground = inventory.building, find_ground(inventory)
     for floor in inventory.floors:
-        z = floor.elevation
+        z, roof = floor.elevation, ground.roof
         is_served = demands[floor.floor, "X"][0].source in ("profile", "beam")
         if is_served and z is not None and roof is not None and z > max(roof, 0.0) * (1 + ROUNDING):
             message = fill("Elevation {z:g} m is above the roof, {roof:g} m: z/h is taken as 1.", z=z, roof=roof)
             fix = fill("Check it, and Height in Building.")
             yield Problem("warning", "Floors", floor.cell("elevation"), message, fix)
-
-
-def _assumed_elevations(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     flagged = {name for (name, _), ones in demands.items() if any("assumed_elevation" in one.flags for one in ones)}
     floors = [floor for floor in inventory.floors if floor.floor in flagged]
     if floors:
@@ -160,14 +165,9 @@ def _assumed_elevations(inventory: Inventory, demands: Demands) -> Iterator[Prob
             "{n:,} floors have no Elevation ({floors}); their numbers times Height over Storeys, counted from the "
             "ground floor as {lowest}, are assumed. Evenly spaced storeys place a floor too low where lower storeys "
             "are higher.",
-            len(floors), floors=", ".join(floor.floor for floor in floors), lowest=find_ground(inventory).lowest,
+            len(floors), floors=", ".join(floor.floor for floor in floors), lowest=ground.lowest,
         )  # fmt: skip
         yield Problem("note", "Floors", floors[0].cell("elevation"), message, fill("Fill in Elevation."))
-
-
-def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
-    """Check what a profile starts from: Height against Storeys and floors, T1 against the height."""
-    building, ground = inventory.building, find_ground(inventory)
     if building.height and building.storeys:
         each = building.height / building.storeys
         if not STOREY[0] <= each <= STOREY[1]:
@@ -196,7 +196,7 @@ def _implausible(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
         yield Problem("warning", "Building", building.cell("period"), message, fix)
 
 
-def _ground_values(inventory: Inventory, demands: Demands, scenario: str) -> Iterator[Problem]:
+def _on_ground_pga(inventory: Inventory, demands: Demands, scenario: str) -> Iterator[Problem]:
     """Report which of Ground PGA and SDS no floor uses; with a hazard file chances a year refer to the former.
 
     The code's force on anchors uses SDS where it is given, else Ground PGA.
@@ -240,7 +240,7 @@ def _say_unused(demands: Demands) -> Text:
     return fill("every floor has a record")
 
 
-def _ground_velocity(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
+def _on_ground_pgv(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     """Report a Ground PGV that no floor follows, one without a PGA, and an implausible ratio of the two."""
     building = inventory.building
     pga, pgv, cell = find_ground(inventory).pga, building.ground_pgv, building.cell("ground_pgv")
@@ -270,38 +270,11 @@ def _ground_velocity(inventory: Inventory, demands: Demands) -> Iterator[Problem
         yield Problem("warning", "Building", cell, message, fill("Check Ground PGV, Ground PGA and their units."))
 
 
-def _unknown(inventory: Inventory, demands: Demands, unconfirmed: Set[str]) -> Iterator[Problem]:
-    """Name the floors of which neither the height nor anything of the building is known."""
-    for flag, text in _UNKNOWN.items():
-        found = [name for (name, _), parallel in demands.items() if any(flag in one.flags for one in parallel)]
-        floors = [floor for floor in inventory.floors if floor.floor in found]
-        if floors:
-            named, what = ", ".join(floor.floor for floor in floors), text
-            if flag == "unknown_building" and not unconfirmed.isdisjoint(found):
-                what = fill("{drawn}; classes stay unconfirmed", drawn=text)
-            message = nfill("floor {floors}: {what}.", "floors {floors}: {what}.", len(floors), floors=named, what=what)
-            fix = _UNKNOWN_FIX[flag]
-            yield Problem("warning", "Floors", floors[0].cell("elevation"), message, fix)
-
-
-_UNKNOWN = {
-    "unknown_building": fill(
-        "neither T1, Height, Storeys nor an Elevation is known, so that buildings of every period and floors of every "
-        "height are drawn"
-    ),
-    "unknown_height": fill("its height in the building is not known and is drawn"),
-}
-_UNKNOWN_FIX = {
-    "unknown_building": fill("Fill in Storeys in Building, and Elevation."),
-    "unknown_height": fill("Fill in Elevation."),
-}
-
-
 def _in_cm_s(pfv: float) -> Text:
     return fill("no PFV") if math.isnan(pfv) else fill("{pfv:.1f} cm/s", pfv=pfv / VELOCITY["cm/s"])
 
 
-def remark_on_site(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
+def _on_site(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     """Yield the notes and warnings on a ShakeMap or scenarios; none where the building has neither."""
     building, site = inventory.building, inventory.site_ground
     cell = building.cell("shakemap")
@@ -347,7 +320,7 @@ def _name(site: SiteGround) -> Text:
     return fill("The ground motion of {file}", file=site.file)
 
 
-def remark_on_shaking(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
+def _on_assumed_shaking(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     """Yield the notes on the line Shaking of Building; none where it is blank."""
     building = inventory.building
     if building.shaking not in SHAKINGS:

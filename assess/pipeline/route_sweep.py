@@ -33,9 +33,9 @@ from assess.pipeline.verify import choose_motions
 from assess.progress import SILENT, Progress
 from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance, PieceRef
+from assess.routes.evaluate import count_unplaced
 from assess.routes.fixes import find_fixes
 from assess.routes.obstructions import Obstructions, find_obstructions
-from assess.routes.rooms import count_unplaced
 from assess.routes.scene import Judgement, Scene
 from assess.settings import AUTO
 from assess.units import ROUNDING

@@ -3,7 +3,7 @@
 import math
 import tempfile
 import weakref
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.delivery.folders import make_folder, remove_folder
-from assess.errors import InputError, OutputError, Problem
+from assess.errors import InputError, OutputError
 from assess.i18n import fill
 from assess.methods import NO_WALL, SIDE_UNKNOWN, Cases, Method, all_methods, simulation
 from assess.model import AXES, Inventory
@@ -28,8 +28,7 @@ from assess.pipeline.adopt import (
 from assess.pipeline.anchors import anchor_first, anchor_named, find_held, find_spread, spell_names
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import check_draws, find_earthquakes, number_pieces
-from assess.pipeline.demand import build_demands, scale_demands
-from assess.pipeline.floor_demand import Demand, Demands
+from assess.pipeline.demand import Demand, Demands, build_demands, scale_demands
 from assess.pipeline.remarks import list_too_low, remark
 from assess.pipeline.schedule import build_schedule, list_entries
 from assess.pipeline.series import build_series, write_series
@@ -124,7 +123,13 @@ def compute(
     progress: Progress = SILENT,
 ) -> Assessment:
     """Return the arrays of a run; parameters and errors are those of `run`."""
-    every = _join_methods(methods)
+    every = (*all_methods(), *methods)  # in the order of reports
+    for name in (fill("key"), fill("title")):
+        taken = [str(getattr(one, name)) for one in every]
+        twice = [one for one in taken if taken.count(one) > 1]
+        if twice:
+            raise InputError.about("two methods have the {name} {text!r}: give each its own, or name one only once.",
+                     name=name, text=twice[0])  # fmt: skip
     class_by = settings.class_by or inventory.building.class_by or CLASS_BY[0]
     settings = change_settings(settings, {"class_by": class_by} | ({} if suite is None else {"runs": len(suite)}))
     check_draws(inventory, settings)
@@ -155,10 +160,13 @@ def _compute(
     filled = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction, progress=progress)
     demands = scale_demands(filled, settings.scale)
     obstructions: Sequence[Obstructions] = ()
+    of_routes = list(remark_on_walls(inventory))
     if inventory.routes:  # imported only where there are any
-        from assess.routes.obstructions import find_obstructions
+        from assess.routes.evaluate import find_unfurnished
+        from assess.routes.obstructions import find_obstructions, find_route_problems
 
         obstructions = find_obstructions(inventory, progress)
+        of_routes += [*find_route_problems(inventory, obstructions), *find_unfurnished(inventory)]
     reaching = {one.item_index for segment in obstructions for one in segment.pieces}
     on_route = np.array([bool(one.route) or at in reaching for at, one in enumerate(inventory.items)], dtype=np.bool_)
     case_item, case_demand, cases = _pair(inventory, demands, settings)
@@ -174,7 +182,7 @@ def _compute(
     remarks = [
         *remark(inventory, filled, scenario, {inventory.items[int(at)].floor for at in case_item[is_unconfirmed]}),
         *remark_suite(suite, cases),
-        *_remark_routes(inventory, obstructions),
+        *of_routes,
     ]
     return Assessment(
         inventory=inventory,
@@ -270,18 +278,6 @@ def _build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path,
     )
 
 
-def _join_methods(further: Sequence[Method]) -> tuple[Method, ...]:
-    """Return the published methods and further ones, in the order of reports."""
-    every = (*all_methods(), *further)
-    for name in (fill("key"), fill("title")):
-        taken = [str(getattr(one, name)) for one in every]
-        twice = [one for one in taken if taken.count(one) > 1]
-        if twice:
-            raise InputError.about("two methods have the {name} {text!r}: give each its own, or name one only once.",
-                     name=name, text=twice[0])  # fmt: skip
-    return every
-
-
 def _pair(
     inventory: Inventory, demands: Demands, settings: Settings
 ) -> tuple[NDArray[np.intp], tuple[Demand, ...], Cases]:
@@ -333,9 +329,6 @@ def _pair(
     return column((at for at, _, _ in pairs), np.intp), case_demand, cases
 
 
-# ---------------------------------------------------------------- routes, imported only where there are any
-
-
 def evaluate_route_tables(assessment: Assessment, progress: Progress, held: Collection[int] = ()) -> RouteTables:
     """Return the routes, with further pieces (indices) held."""
     inventory, settings = assessment.inventory, assessment.settings
@@ -346,14 +339,3 @@ def evaluate_route_tables(assessment: Assessment, progress: Progress, held: Coll
     falls = assessment.find_falls(held)
     found = evaluate_routes(inventory, assessment.obstructions, falls, settings, progress=progress)
     return found if assessment.annual is None or held else add_annual(found, assessment.annual.ways)
-
-
-def _remark_routes(inventory: Inventory, obstructions: "Sequence[Obstructions]") -> Iterator[Problem]:
-    """Yield what is to be said of walls and, where there are routes, of the pieces beside them."""
-    yield from remark_on_walls(inventory)
-    if inventory.routes:
-        from assess.routes.obstructions import find_route_problems
-        from assess.routes.rooms import find_unfurnished
-
-        yield from find_route_problems(inventory, obstructions)
-        yield from find_unfurnished(inventory)

@@ -8,9 +8,8 @@ anchored would.
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import accumulate
-from typing import NamedTuple
 
-from assess.details import AT_BASE, AT_WALL, DETAILS, Detail, count_fixings, find_detail
+from assess.details import AT_BASE, AT_WALL, DETAILS, count_fixings, find_detail
 from assess.model import Cost, Inventory
 from assess.results import ItemResult, ItemRow, Results, count_pieces, sum_falls
 from assess.risk import RiskClass, find_ends
@@ -39,11 +38,20 @@ def build_schedule(
     costs = {detail.key: one for detail, one in found if detail}
     together = _list_together(results.route_tables.routes)
     held = {one.item.index for entry in entries for one in entry}
+    described = []
+    for place, entry in enumerate(entries, 1):
+        indices, alike = tuple(one.item.index for one in entry), dict[object, list[ItemResult]]()
+        for one in entry:
+            alike.setdefault(_kind(one), []).append(one)
+        row = ScheduleRow(
+            place=place, floor=entry[0].item.floor, room=entry[0].item.room, item_indices=indices,
+            pieces=count_pieces(entry), is_together=any(len(one & set(indices)) > 1 for one in together),
+            works=tuple(_describe_work(own, costs) for own in alike.values()),
+            falls_avoided=avoided[place - 1], falls_left=left[place],
+        )  # fmt: skip
+        described.append(row)
     return Schedule(
-        rows=tuple(
-            _describe(place, entry, costs, together, avoided[place - 1], left[place])
-            for place, entry in enumerate(entries, 1)
-        ),
+        rows=tuple(described),
         before=_sum_up(rows, results.route_tables, ()),
         after=_sum_up(rows, evaluate(held) if held else results.route_tables, held),
     )
@@ -58,9 +66,31 @@ def count_falls(one: ItemResult) -> float:
 
 
 def list_entries(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[list[ItemResult]]:
-    """Return the pieces of each entry of the schedule, in its order."""
-    needed = {fix.item_index for route in routes for fix in route.fixes}
-    return group_fixes(fix_first(rows, needed), routes)
+    """Return the pieces of each entry of the schedule, in its order.
+
+    Those that only help together, and alike ones of one room, stand in one. It stands where the first of its pieces
+    does.
+    """
+    chosen = fix_first(rows, {fix.item_index for route in routes for fix in route.fixes})
+    leader = {one.item.index: one.item.index for one in chosen}
+
+    def find(index: int) -> int:
+        while leader[index] != index:
+            index = leader[index]
+        return index
+
+    kinds: dict[tuple[object, ...], int] = {}
+    for one in chosen:
+        first = kinds.setdefault(_kind(one), one.item.index)
+        leader[find(one.item.index)] = find(first)
+    for joined in _list_together(routes):
+        own = sorted(joined & leader.keys())
+        for index in own[1:]:
+            leader[find(index)] = find(own[0])
+    entries: dict[int, list[ItemResult]] = {}
+    for one in chosen:
+        entries.setdefault(find(one.item.index), []).append(one)
+    return list(entries.values())
 
 
 def fix_first(results: Iterable[ItemResult], needed: Collection[int] = ()) -> list[ItemResult]:
@@ -89,32 +119,6 @@ def fix_first(results: Iterable[ItemResult], needed: Collection[int] = ()) -> li
     )
 
 
-def group_fixes(chosen: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[list[ItemResult]]:
-    """Return pieces as entries: those that only help together, and alike ones of one room, stand in one.
-
-    An entry stands where the first of its pieces does.
-    """
-    leader = {one.item.index: one.item.index for one in chosen}
-
-    def find(index: int) -> int:
-        while leader[index] != index:
-            index = leader[index]
-        return index
-
-    kinds: dict[tuple[object, ...], int] = {}
-    for one in chosen:
-        first = kinds.setdefault(_kind(one), one.item.index)
-        leader[find(one.item.index)] = find(first)
-    for joined in _list_together(routes):
-        own = sorted(joined & leader.keys())
-        for index in own[1:]:
-            leader[find(index)] = find(own[0])
-    entries: dict[int, list[ItemResult]] = {}
-    for one in chosen:
-        entries.setdefault(find(one.item.index), []).append(one)
-    return list(entries.values())
-
-
 def _kind(one: ItemResult) -> tuple[object, ...]:
     """Return what alike pieces of one room share; a piece without a room is like no other."""
     item, adopted = one.item, one.adopted
@@ -141,38 +145,25 @@ def _list_together(routes: Sequence[RouteRow]) -> list[frozenset[int]]:
 # ---------------------------------------------------------------- entries
 
 
-def _describe(
-    place: int,
-    entry: Sequence[ItemResult],
-    costs: Mapping[str, Cost],
-    together: Sequence[frozenset[int]],
-    avoided: float,
-    left: float,
-) -> ScheduleRow:
-    first, indices = entry[0].item, tuple(one.item.index for one in entry)
-    alike: dict[object, list[ItemResult]] = {}
-    for one in entry:
-        alike.setdefault(_kind(one), []).append(one)
-    return ScheduleRow(
-        place=place,
-        floor=first.floor,
-        room=first.room,
-        item_indices=indices,
-        pieces=count_pieces(entry),
-        is_together=any(len(one & set(indices)) > 1 for one in together),
-        works=tuple(_describe_work(own, costs) for own in alike.values()),
-        falls_avoided=avoided,
-        falls_left=left,
-    )
-
-
 def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> WorkRow:
+    """Return the work on alike pieces: the largest forces that their fixings have to carry.
+
+    Moments about the toe give the tension at the bracket; at the base the same moment acts on the breadth, and the base
+    carries the whole horizontal force, k W: that of the tension without the help of the weight, k W z/h.
+    """
     first, rows = alike[0].item, [one.item for one in alike]
     detail = DETAILS[choose_detail(first)]
     pieces, cost = sum(one.quantity for one in rows), costs.get(detail.key)
-    forces = [find_forces(one, detail) for one in rows]
-    high = max(one.high for one in forces)
-    code = max((one.code for one in forces if one.code is not None), default=None)
+    tension, high, codes, shear = [], [], [], []
+    for one in rows:
+        anchor = one.anchor
+        lever = anchor.bracket_height_cm / one.breadth_cm if detail.is_at_base else 1.0
+        whole = anchor.tension_without_weight_kn * anchor.bracket_height_cm / (one.centre_of_gravity * one.height_cm)
+        tension.append(anchor.tension_kn * lever)
+        high.append(anchor.tension_high_kn * lever)
+        codes += [] if anchor.tension_code_kn is None else [anchor.tension_code_kn * lever]
+        shear.append(whole if detail.is_at_base else anchor.shear_kn)
+    code = max(codes, default=None)
     return WorkRow(
         floor=first.floor,
         room=first.room,
@@ -180,43 +171,17 @@ def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> Wo
         item_indices=tuple(one.index for one in rows),
         pieces=pieces,
         detail=detail.key,
-        tension_kn=max(one.tension for one in forces),
-        tension_high_kn=high,
+        tension_kn=max(tension),
+        tension_high_kn=max(high),
         tension_code_kn=code,
-        shear_kn=max(one.shear for one in forces),
-        fixings=count_fixings(detail, 1000 * max(high, code or 0.0)),
+        shear_kn=max(shear),
+        fixings=count_fixings(detail, 1000 * max(*high, code or 0.0)),
         weights_assumed=sum(one.quantity for one in rows if one.anchor.weight_source == "estimate"),
         heights_assumed=0 if detail.is_at_base else sum(one.quantity for one in rows if one.anchor.is_height_assumed),
         is_per_metre=any(one.anchor.is_per_metre for one in rows),
         unit_cost=None if cost is None else cost.unit_cost,
         cost=None if cost is None else pieces * cost.unit_cost,
         cost_source="" if cost is None else cost.source,
-    )
-
-
-class Forces(NamedTuple):
-    """What the fixings of one piece have to carry [kN]: tension at PFA, its 84 % and by the code, shear at PFA."""
-
-    tension: float
-    high: float
-    code: float | None
-    shear: float
-
-
-def find_forces(item: ItemRow, detail: Detail) -> Forces:
-    """Return what the fixings of a piece have to carry in a way to fix it.
-
-    Moments about the toe give the tension at the bracket; at the base the same moment acts on the breadth, and the base
-    carries the whole horizontal force, k W: that of the tension without the help of the weight, k W z/h.
-    """
-    anchor = item.anchor
-    whole = anchor.tension_without_weight_kn * anchor.bracket_height_cm / (item.centre_of_gravity * item.height_cm)
-    lever = anchor.bracket_height_cm / item.breadth_cm if detail.is_at_base else 1.0
-    return Forces(
-        anchor.tension_kn * lever,
-        anchor.tension_high_kn * lever,
-        None if anchor.tension_code_kn is None else anchor.tension_code_kn * lever,
-        whole if detail.is_at_base else anchor.shear_kn,
     )
 
 

@@ -34,7 +34,7 @@ from numpy.typing import NDArray
 from assess.errors import CancelledError
 from assess.methods import Cases, Joint
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.floor_demand import Demand
+from assess.pipeline.demand import Demand
 from assess.progress import SILENT, Progress
 from assess.results import ItemResult
 from assess.risk import RiskClass
@@ -75,8 +75,18 @@ def build_series(
     assessment: Assessment, demands: Sequence[Demand], results: Iterable[ItemResult], progress: Progress = SILENT
 ) -> Arrays:
     """Compute the series."""
-    arrays: Arrays = dict(_files(assessment))
-    joints = assessment.joints
+    inventory, joints, files = assessment.inventory, assessment.joints, dict[str, bytes]()
+    if inventory.data:
+        files["workbook"] = inventory.data
+    logo = inventory.building.logo
+    if logo is not None and logo.is_file():
+        files["logo"] = logo.read_bytes()
+    files |= {f"plan/{at}": one.plan.content for at, one in enumerate(inventory.floors) if one.plan is not None}
+    arrays: Arrays = {name: np.frombuffer(content, dtype=np.uint8) for name, content in files.items()}
+    order = {name: at for at, name in enumerate(inventory.photos)}
+    if order:
+        arrays["photo/of_item"] = np.array([order.get(item.more.get("photo", ""), -1) for item in inventory.items])
+    arrays |= {f"photo/{at}": np.frombuffer(inventory.photos[name], dtype=np.uint8) for name, at in order.items()}
     for index, demand in enumerate(demands):
         progress.check()
         arrays |= {f"motion/{index}/{name}": array for name, array in _of_motion(demand, joints.get(demand))}
@@ -96,27 +106,6 @@ def write_series(path: Path, arrays: Arrays, progress: Progress = SILENT) -> Non
     except CancelledError:
         path.unlink(missing_ok=True)
         raise
-
-
-def _files(assessment: Assessment) -> Iterator[tuple[str, NDArray[Any]]]:
-    inventory = assessment.inventory
-    content = inventory.data
-    if content:
-        yield "workbook", np.frombuffer(content, dtype=np.uint8)
-    logo = inventory.building.logo
-    if logo is not None and logo.is_file():
-        yield "logo", np.frombuffer(logo.read_bytes(), dtype=np.uint8)
-    for at, floor in enumerate(inventory.floors):
-        if floor.plan is not None:
-            yield f"plan/{at}", np.frombuffer(floor.plan.content, dtype=np.uint8)
-    order = {name: at for at, name in enumerate(inventory.photos)}
-    if order:
-        yield "photo/of_item", np.array([order.get(item.more.get("photo", ""), -1) for item in inventory.items])
-    for name, at in order.items():
-        yield f"photo/{at}", np.frombuffer(inventory.photos[name], dtype=np.uint8)
-
-
-# ---------------------------------------------------------------- motions
 
 
 def _of_motion(demand: Demand, joint: Joint | None) -> Iterator[tuple[str, NDArray[Any]]]:
@@ -145,9 +134,6 @@ def _of_motion(demand: Demand, joint: Joint | None) -> Iterator[tuple[str, NDArr
         yield "record_spectrum_g", own / GRAVITY
 
 
-# ---------------------------------------------------------------- contours of risk over breadth and PFA
-
-
 def _contours(assessment: Assessment, results: Iterable[ItemResult]) -> Iterator[tuple[str, NDArray[Any]]]:
     """Yield the grid for the height that most risky pieces share, else the commonest; nothing without pieces."""
     free = [one for one in results if not one.is_anchored]
@@ -155,7 +141,8 @@ def _contours(assessment: Assessment, results: Iterable[ItemResult]) -> Iterator
         return
     counts: Counter[float] = Counter()
     for one in [one for one in free if one.adopted.upper >= RiskClass.HIGH] or free:
-        counts[_round(one.item.height_cm)] += one.item.quantity
+        step = 10.0 if one.item.height_cm >= FINE_BELOW else 1.0  # halves go up
+        counts[math.floor(one.item.height_cm / step * (1 + ROUNDING) + 0.5) * step] += one.item.quantity
     height = max(counts, key=lambda height: (counts[height], height))  # that most pieces (not rows) share
     near = [one for one in free if abs(one.item.height_cm - height) <= ALIKE * height * (1 + ROUNDING)]
     pieces = sorted(near, key=lambda one: (-one.adopted.upper, -one.adopted.probability, natural_key(one.item.item)))
@@ -182,9 +169,3 @@ def _contours(assessment: Assessment, results: Iterable[ItemResult]) -> Iterator
         if method.is_live and not (method.ruled_by == "pfv" and math.isnan(ratio)):
             value = np.nan_to_num(method.evaluate(cases, assessment.settings).value)  # 0 where no piece rocks by it
             yield method.key, value.reshape(pfa.size, breadth.size).astype(np.float32)
-
-
-def _round(height: float) -> float:
-    """Return a height [cm] rounded to 10 cm, or to 1 cm where it is small; halves go up."""
-    step = 10.0 if height >= FINE_BELOW else 1.0
-    return math.floor(height / step * (1 + ROUNDING) + 0.5) * step

@@ -9,16 +9,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from assess.annual_results import AnnualWays
-from assess.methods import Example, Joint, simulation
+from assess.methods import Example, simulation
 from assess.methods.simulate import LOOKS, interval_width
-from assess.model import AXES, Floor, Inventory, Item
+from assess.model import AXES, Floor, Item
 from assess.motion.record import treatment
 from assess.motion.scenario import PROFILES
 from assess.pipeline.anchors import build_anchors
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import describe_draws
-from assess.pipeline.demand import find_shaking, find_site
-from assess.pipeline.floor_demand import Demand
+from assess.pipeline.demand import Demand, find_shaking, find_site
 from assess.results import (
     CaseTable,
     DrawTable,
@@ -84,7 +83,7 @@ def list_demands(assessment: Assessment) -> list[Demand]:
 def build_motions(assessment: Assessment, demands: Sequence[Demand]) -> tuple[MotionRow, ...]:
     """Return a row for each motion, with what its record says and what pieces were simulated under."""
     names, joints = ("format", "station", "location", "channel", "event", "azimuth_deg", "corrected"), assessment.joints
-    rows = []
+    overturned, rows = assessment.outcomes[simulation().key].detail["record_overturned"], []
     for index, demand in enumerate(demands):
         record, more = demand.record, dict[str, Any]()
         if record is not None:
@@ -93,7 +92,15 @@ def build_motions(assessment: Assessment, demands: Sequence[Demand]) -> tuple[Mo
                 "samples": len(record.acceleration), "treatment": treatment(record), "notes": tuple(record.notes),
             }  # fmt: skip
         if demand in joints:
-            more["ensemble"] = _describe_ensemble(assessment, joints[demand])
+            joint = joints[demand]
+            ensemble, fell = assessment.cases.ensembles[joint.ensemble], overturned[joint.cases].astype(np.float64)
+            known = fell[~np.isnan(fell)]
+            more["ensemble"] = EnsembleRow(
+                motions=int(joint.runs.max()), least_motions=int(joint.runs.min()), assumed_motion=ensemble.is_assumed,
+                unknown_building=ensemble.is_unknown, weak_motions=joint.is_weak, is_generated=assessment.suite is None,
+                cases=int(joint.cases.size), fell_in_record=int(known.sum()) if known.size else None, fit=joint.fit,
+                signs=ensemble.signs, bands=joint.bands,
+            )  # fmt: skip
         row = _copy(
             MotionRow,
             demand,
@@ -109,25 +116,6 @@ def build_motions(assessment: Assessment, demands: Sequence[Demand]) -> tuple[Mo
     return tuple(rows)
 
 
-def _describe_ensemble(assessment: Assessment, joint: Joint) -> EnsembleRow:
-    ensemble = assessment.cases.ensembles[joint.ensemble]
-    fell = assessment.outcomes[simulation().key].detail["record_overturned"][joint.cases].astype(np.float64)
-    known = fell[~np.isnan(fell)]
-    return EnsembleRow(
-        motions=int(joint.runs.max()),
-        least_motions=int(joint.runs.min()),
-        assumed_motion=ensemble.is_assumed,
-        unknown_building=ensemble.is_unknown,
-        weak_motions=joint.is_weak,
-        is_generated=assessment.suite is None,
-        cases=int(joint.cases.size),
-        fell_in_record=int(known.sum()) if known.size else None,
-        fit=joint.fit,
-        signs=ensemble.signs,
-        bands=joint.bands,
-    )
-
-
 # ---------------------------------------------------------------- furniture
 
 
@@ -136,7 +124,13 @@ def build_items(assessment: Assessment, routes: "RouteTables") -> tuple[ItemRow,
     inventory = assessment.inventory
     firsts = np.searchsorted(assessment.case_item, np.arange(len(inventory.items) + 1)).tolist()
     annual = {} if assessment.annual is None else assessment.annual.items
-    governing, named = assessment.governing.tolist(), _list_routes(inventory, routes)
+    named: dict[int, dict[str, None]] = {}  # the routes of which a piece reaches a segment, the one that it names first
+    for at, item in enumerate(inventory.items):
+        named[at] = {item.route: None} if item.route else {}
+    for segment in routes.segments:
+        for piece in segment.pieces:
+            named[piece.item_index][segment.route] = None
+    governing = assessment.governing.tolist()
     walls, held = find_walls(inventory), assessment.held.tolist()
     shared = [name for name in _shared(ItemRow, Item) if name not in ("assumed", "extra")]
     read = attrgetter(*shared)
@@ -156,7 +150,7 @@ def build_items(assessment: Assessment, routes: "RouteTables") -> tuple[ItemRow,
             edge_distance_m=item.edge_distance,
             assumed=tuple(item.assumed),
             extra=tuple(item.extra),
-            routes=named.get(index, (item.route,) if item.route else ()),
+            routes=tuple(named[index]),
             governing=governing[index],
             first_case=firsts[index],
             last_case=firsts[index + 1],
@@ -180,16 +174,6 @@ def add_annual(tables: "RouteTables", ways: AnnualWays) -> "RouteTables":
         ),
         rooms=tuple(replace(one, annual=ways.rooms.get(one.room)) for one in tables.rooms),
     )
-
-
-def _list_routes(inventory: Inventory, routes: "RouteTables") -> Mapping[int, tuple[str, ...]]:
-    """Return the routes of which a piece reaches a segment, by its index: that which it names first."""
-    found: dict[int, dict[str, None]] = {}
-    for segment in routes.segments:
-        for piece in segment.pieces:
-            named = inventory.items[piece.item_index].route
-            found.setdefault(piece.item_index, {named: None} if named else {})[segment.route] = None
-    return {index: tuple(names) for index, names in found.items()}
 
 
 def build_cases(assessment: Assessment, demands: Sequence[Demand]) -> CaseTable:

@@ -15,8 +15,8 @@ from assess.model import Building, Inventory
 from assess.motion.assumed import RATIO_SCATTER
 from assess.motion.floor_medians import SCATTER
 from assess.pipeline.city_draws import number_building
+from assess.pipeline.demand import Demand, Demands
 from assess.pipeline.ensembles import FloorEnsemble, SuiteEnsemble, build_ensembles
-from assess.pipeline.floor_demand import Demand, Demands
 from assess.progress import SILENT, Progress
 from assess.rocking.draws import PEAK, Uncertainty
 from assess.settings import AUTO, Settings, count_processors

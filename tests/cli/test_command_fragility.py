@@ -17,7 +17,7 @@ from assess.cli.curve_figures import CURVES_A_PANEL, MOST_CURVE_PANELS, choose_c
 from assess.cli.fragility_output import FORMATS, MOST_LINES, Curves
 from assess.fragility import fit_fragility, lognormal_chance
 from assess.model import Floor, Item
-from assess.pipeline.floor_demand import Demand
+from assess.pipeline.demand import Demand
 from assess.pipeline.piece_fragility import FloorMotions, PieceFragilities, PieceFragility, find_piece_fragilities
 from assess.pipeline.run import compute
 from assess.units import GRAVITY

@@ -9,8 +9,7 @@ import assess
 from assess.model import AXES, Building, Floor, FloorRecord, Inventory
 from assess.motion.formats import read_records
 from assess.motion.record import treat
-from assess.pipeline.demand import _interpolate, build_demands
-from assess.pipeline.floor_demand import Demand
+from assess.pipeline.demand import Demand, _interpolate, build_demands
 from tests.workbooks import RECORDS
 
 G = 9.80665

@@ -6,7 +6,7 @@ import pytest
 
 from assess.report.say.route import say_reservations
 from assess.route_results import RouteState
-from assess.routes.rooms import find_unfurnished, list_unfurnished
+from assess.routes.evaluate import find_unfurnished, list_unfurnished
 from tests.routes.buildings import CORRIDOR, building, corridor, evaluated, make_falls, piece, place, stretch
 
 ROOMS = (place("101 Office", "room", (0, 0)), place("102 Store", "room", (5, 0)), place("Hall", "corridor", (9, 0)),

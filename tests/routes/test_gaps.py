@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from assess.routes.chances import to_array, to_sets
-from assess.routes.gaps import Gaps
-from assess.routes.obstructions import find_obstructions
+from assess.routes.obstructions import Gaps, find_obstructions
 from tests.routes.buildings import CORRIDOR, building, corridor, piece
 
 QUICK = settings(max_examples=40, deadline=None)
