@@ -164,7 +164,7 @@ def _evaluate_ways(scenes: Sequence[Scene], integral: Integral, doubtful: frozen
     routes, fail = dict[str, AnnualRow](), dict[str, AnnualRow]()
     for name in dict.fromkeys(one.segment.route for one in first.obstructions if one.is_evaluated):
         segments = first.segments_of(name)
-        is_blocked = first.course(segments).is_blocked
+        is_blocked = first.course(segments)
         if any(first.falls.anchored[item] for item, _ in first.keys(segments, anchors_fail=True)):
             fail[name] = find(segments, is_blocked, anchors_fail=True)
         routes[name] = find(segments, is_blocked)

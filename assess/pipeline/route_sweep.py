@@ -205,7 +205,7 @@ class _Study:
             judged = {}
             for name in self.names:
                 segments = scene.segments_of(name)
-                judged[name] = scene.judge(segments, scene.when_blocked(segments, scene.course(segments).is_blocked))
+                judged[name] = scene.judge(segments, scene.when_blocked(segments, scene.course(segments)))
             self.levels[value] = scene, judged
 
     def halve(self, most: int) -> list[float]:
@@ -235,9 +235,6 @@ class _Study:
             names = {one.demand.floor.floor for one in chosen if isinstance(one, GeneratedEnsemble | DrawnEnsemble)}
             return tuple(floor.floor for floor in inventory.floors if floor.floor in names)
 
-        def on_floor(floor: str) -> list[int]:
-            return [at for at, one in enumerate(scene.obstructions) if one.segment.floor == floor]
-
         too_stocky = np.intersect1d(self.beside, assessment.case_item[assessment.cases.is_stocky])
         uncertainty = replace(cases.uncertainty, motion=float(cases.dispersion.max(initial=0.0)))
         return Fragility(
@@ -252,7 +249,7 @@ class _Study:
             unshaped=name_floors(made for made, _ in ensembles if made.is_unknown),
             weak=name_floors(made for made, one in ensembles if one.is_weak),
             stocky=sum(inventory.items[at].quantity for at in too_stocky),
-            unplaced=sum(count_unplaced(scene, floor.floor, on_floor(floor.floor)) for floor in inventory.floors),
+            unplaced=sum(count_unplaced(scene, floor.floor) for floor in inventory.floors),
         )
 
     def _describe_route(self, name: str, doubtful: frozenset[int]) -> RouteFragility:
@@ -262,7 +259,7 @@ class _Study:
         causes: tuple[PieceRef, ...] = ()
         reached = (scene for scene, routes in levels if routes[name].chances[0].probability >= risk)
         if (scene := next(reached, None)) is not None:  # at the first value that is not below the limit
-            lanes, is_blocked = {at: self.obstructions[at] for at in segments}, first.course(segments).is_blocked
+            lanes, is_blocked = {at: self.obstructions[at] for at in segments}, first.course(segments)
             steps, _ = find_fixes(scene.couplings(segments), lanes, is_blocked, risk, progress=self.sweep.progress)
             causes = tuple(scene.piece(item) for item, _, _ in steps)
         floors = tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor))

@@ -11,7 +11,7 @@ intersected by `&` and counted at once. The complement is `every & ~set`, of the
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache, reduce
+from functools import lru_cache, partial, reduce
 from operator import or_
 
 import numpy as np
@@ -169,16 +169,18 @@ def build_couplings(
     fallen = frozenset(key for key in keys if unconfirmed_fall and key[0] in falls.unconfirmed)
     simulated = {item: columns[item] for item in known if item in falls.fell}
     alone = [item for item in known if item not in simulated]
-    rows = {item: _row_unit(falls, item, columns[item]) for item in known}
-    lone = list(rows.values())
-    mixed = [*([_joint_unit(falls, simulated)] if simulated else []), *(rows[item] for item in alone)]
-    joint = independent = (
-        whole.independent if whole and _is_drawn(lone) else _combine(lone, keys, fallen, seed, progress)
-    )
+    sizes = {item: int(falls.fell[item].size) for item in simulated}
+    # outcomes of a piece that was decided after fewer draws than another are repeated, so that its chance is kept
+    runs = common if (common := math.lcm(*sizes.values())) <= MOST_PATTERNS else max(sizes.values())
+    together = [_Unit((0, 1), [at for own in simulated.values() for at in own], runs)] if simulated else []
+    rows = {item: _Unit((item, 0), columns[item], 1 + len(columns[item])) for item in known}
+    lone, mixed = list(rows.values()), [*together, *(rows[item] for item in alone)]
+    combine = partial(_combine, falls, keys, fallen, seed, progress)
+    joint = independent = whole.independent if whole and _is_drawn(lone) else combine(lone)
     if whole and _is_drawn(mixed):
         joint = whole.joint
     elif simulated:
-        joint = _combine(mixed, keys, fallen, seed, progress)
+        joint = combine(mixed)
     if whole:
         correlated, ends = whole.correlated, whole.ends
     else:
@@ -190,7 +192,6 @@ def build_couplings(
         correlated = Draws({key: under[level] for key, level in chance.items()}, np.diff(levels))
         surely = {key: NONE | EVERY if falls_always else 0 for key, falls_always in certain.items()}
         ends = Draws({**dict.fromkeys(keys, EVERY), **surely}, np.array([0.5, 0.5]))
-    sizes = {item: int(falls.fell[item].size) for item in simulated}
     return Couplings(
         keys=keys,
         joint=joint,
@@ -207,49 +208,35 @@ def build_couplings(
     )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
 class _Unit:
-    """Pieces that fall together in a known way, independently of other units.
+    """Pieces that fall together in one of `count` patterns, independently of other units; `columns` are their places.
 
-    `key` identifies it in draws: the row and 0, or for all simulated pieces 0 and 1. `columns` are those of its c
-    pieces. `patterns` returns which of them fall in each of `count` patterns (count, c), and the weights (count,).
+    `key` identifies it in draws: the row and 0, or for all simulated pieces 0 and 1.
     """
 
     key: tuple[int, int]
-    columns: list[int]
+    columns: Sequence[int]
     count: int
-    patterns: Callable[[], tuple[BoolArray, FloatArray]]
 
 
-def _row_unit(falls: Falls, item: int, columns: list[int]) -> _Unit:
-    """Return the pieces of one row, which fall independently of each other: none, one, or two or more of them."""
+def _find_patterns(falls: Falls, unit: _Unit, keys: Sequence[Key]) -> tuple[BoolArray, FloatArray]:
+    """Return which pieces of a unit fall in each of its patterns (count, pieces), and the weights (count,).
 
-    def patterns() -> tuple[BoolArray, FloatArray]:
-        p, q = float(falls.probability[item]), int(falls.quantity[item])
-        none = (1 - p) ** q
-        if len(columns) == 1:
-            return np.array([[False], [True]]), np.array([none, 1 - none])
-        one = q * p * (1 - p) ** (q - 1)
-        fell = np.array([[False, False], [True, False], [True, True]])
-        return fell, np.array([none, one, max(0.0, 1 - none - one)])
-
-    return _Unit((item, 0), columns, 1 + len(columns), patterns)
-
-
-def _joint_unit(falls: Falls, columns: Mapping[int, list[int]]) -> _Unit:
-    """Return the simulated pieces, which fall draw by draw.
-
-    The outcomes of a piece that was decided after fewer draws than another are repeated, so that its chance is kept.
+    Simulated pieces fall draw by draw. The pieces of a row fall independently of each other: none, one, or two or more.
     """
-    sizes = {falls.fell[item].size for item in columns}
-    common = math.lcm(*sizes)
-    runs = common if common <= MOST_PATTERNS else max(sizes)
-
-    def patterns() -> tuple[BoolArray, FloatArray]:
-        fell = [np.resize(falls.fell[item], runs) for item, own in columns.items() for _ in own]
-        return np.column_stack(fell), np.full(runs, 1.0 / runs)
-
-    return _Unit((0, 1), [at for own in columns.values() for at in own], runs, patterns)
+    item, is_joint = unit.key
+    if is_joint:
+        fell = [np.resize(falls.fell[keys[at][0]], unit.count) for at in unit.columns]
+        return np.column_stack(fell), np.full(unit.count, 1.0 / unit.count)
+    p, q = float(falls.probability[item]), int(falls.quantity[item])
+    none, one = (1 - p) ** q, q * p * (1 - p) ** (q - 1)
+    if len(unit.columns) == 1:
+        return np.array([[False], [True]]), np.array([none, 1 - none])
+    return (
+        np.array([[False, False], [True, False], [True, True]]),
+        np.array([none, one, max(0.0, 1 - none - one)]),
+    )
 
 
 def _is_drawn(units: Sequence[_Unit]) -> bool:
@@ -257,7 +244,7 @@ def _is_drawn(units: Sequence[_Unit]) -> bool:
 
 
 def _combine(
-    units: Sequence[_Unit], keys: tuple[Key, ...], fallen: Collection[Key], seed: int, progress: Progress
+    falls: Falls, keys: tuple[Key, ...], fallen: Collection[Key], seed: int, progress: Progress, units: Sequence[_Unit]
 ) -> Draws:
     """Combine units that fall independently: every combination where they are few, else `DRAWS` of them.
 
@@ -267,7 +254,7 @@ def _combine(
     if not units:
         return Draws.of(keys, always[np.newaxis], np.ones(1))
     progress.check()
-    patterns = [unit.patterns() for unit in units]
+    patterns = [_find_patterns(falls, unit, keys) for unit in units]
     progress.check()
     if _is_drawn(units):  # patterns of a unit, each as often as its weight says, in an order of the unit's own
         at = np.array([

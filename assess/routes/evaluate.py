@@ -171,13 +171,13 @@ def _route(scene: Scene, name: str, rows: Sequence[SegmentRow]) -> RouteRow:
     served, led = find_ends(segments, kinds_of(scene.inventory.places))
     unevaluated = tuple(one.segment for at, one in segments.items() if not scene.is_evaluated(at))
     is_evaluated = len(unevaluated) < len(segments)
-    outlook = scene.outlook(segments, course.is_blocked, is_evaluated=is_evaluated)
-    fixes, is_fixed = list_fixes(scene, segments, course.is_blocked)
+    outlook = scene.outlook(segments, course, is_evaluated=is_evaluated)
+    fixes, is_fixed = list_fixes(scene, segments, course)
     chances = {at: (rows[at].state, rows[at].blocked) for at in segments}
     missing_after: tuple[MissingRow, ...] = ()
     if fixes and any(scene.missing(at) for at in segments):  # fixes count unconfirmed pieces already
         held = scene.with_held(fix.item_index for fix in fixes)
-        after = held.settle(segments, lambda draws: held.at_best_and_worst(draws, segments, course.is_blocked))
+        after = held.settle(segments, lambda draws: held.at_best_and_worst(draws, segments, course))
         missing_after = held.list_missing(after.verdict, segments)
     return RouteRow(
         route=name,
@@ -216,7 +216,7 @@ def find_joint_draws(
         if not couplings.is_joint or couplings.unconfirmed or couplings.runs not in (0, runs):
             continue
         draws, course = couplings.joint, scene.course(segments)
-        blocked = course.is_blocked(scene.blocked(draws, segments), draws.every)
+        blocked = course(scene.blocked(draws, segments), draws.every)
         # where no piece reaches it, it is open in every draw, or in none
         found[name] = to_array(blocked, runs).astype(np.bool_) if couplings.runs else np.full(runs, bool(blocked))
     return found
@@ -337,7 +337,7 @@ def evaluate_floor(
     blocked = []
     for route in routes:  # by their segments on this floor
         lanes = {at: scene.obstructions[at].segment for at in segments if scene.obstructions[at].segment.route == route}
-        is_blocked = scene.course(lanes).is_blocked
+        is_blocked = scene.course(lanes)
         found = scene.settle(lanes, partial(scene.at_best_and_worst, segments=lanes, is_blocked=is_blocked))
         if found.verdict.state != RouteState.NOT_KNOWN:
             blocked.append(found.standing[0].probability)
@@ -363,13 +363,14 @@ def evaluate_floor(
         cut_off_rooms_expected=sum(room.loses_every_exit.probability for room in own if room.is_known),
         unknown_rooms=sum(not room.is_known for room in own),
         any_room_cut_off=any_cut_off,
-        uncounted_pieces=count_unplaced(scene, floor, segments),
+        uncounted_pieces=count_unplaced(scene, floor),
     )
 
 
-def count_unplaced(scene: Scene, floor: str, segments: Sequence[int]) -> int:
+def count_unplaced(scene: Scene, floor: str) -> int:
     """Count the pieces of a floor of which it is not known whether they fall onto one of its segments."""
-    has_plan = any(scene.obstructions[at].band for at in segments)
+    segments = [one for one in scene.obstructions if one.segment.floor == floor]
+    has_plan = any(one.band for one in segments)
     items = [item for item in scene.inventory.items if item.floor == floor and not item.route] if segments else []
     return sum(item.quantity for item in items if item.x is None or item.y is None or not has_plan)
 

@@ -95,24 +95,11 @@ def _outward(graph: "nx.MultiGraph[str]", targets: Collection[str]) -> tuple[tup
     return tuple(sorted(edges, key=lambda edge: (min(far.get(edge[0], 0), far.get(edge[1], 0)), edge[2])))
 
 
-@dataclass(frozen=True, slots=True)
-class Course:
-    """When a route counts as blocked: where a place that it serves is cut off, or a segment that joins nothing is."""
+def build_course(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> IsBlocked:
+    """Return when a route counts as blocked: a place that it serves is cut off, or a segment that joins nothing is.
 
-    parts: tuple[tuple[Part, tuple[str, ...]], ...]
-    loose: tuple[int, ...]
-
-    def is_blocked(self, blocked: Blocked, every: int) -> int:
-        """Return the set of the draws in which it is; `every` is the set of all draws."""
-        lost = (part.cut_off(blocked, sources, every) for part, sources in self.parts)
-        return union([*(blocked[at] for at in self.loose), *chain.from_iterable(lost)])
-
-
-def build_course(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> Course:
-    """Return the course of a route: it serves its rooms and its open ends, and leads to its exits.
-
-    Without an exit it leads to its stairs, down a flight that it includes to the end of that; without stairs, or where
-    it is all stairs, to where its last segment ends.
+    It serves its rooms and its open ends, and leads to its exits. Without an exit it leads to its stairs, down a flight
+    that it includes to the end of that; without stairs, or where it is all stairs, to where its last segment ends.
     """
     parts, loose = [], [at for at, one in segments.items() if not (one.start and one.end)]
     for led, served in _list_led(segments, kinds):
@@ -121,7 +108,12 @@ def build_course(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> C
             parts.append((led, tuple(sorted(served))))
         else:  # without any that it serves, it is all ways out
             loose += led.segments
-    return Course(tuple(parts), tuple(loose))
+
+    def is_blocked(blocked: Blocked, every: int) -> int:
+        lost = (part.cut_off(blocked, sources, every) for part, sources in parts)
+        return union([*(blocked[at] for at in loose), *chain.from_iterable(lost)])
+
+    return is_blocked
 
 
 def find_ends(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -20,7 +20,7 @@ from assess.progress import SILENT, Progress
 from assess.risk import wilson_interval
 from assess.route_results import DOUBTS, Chance, MissingRow, PieceRef, RouteState, find_state, join_missing
 from assess.routes.chances import Couplings, Draws, Falls, Happens, Key, build_couplings, find_chances, union
-from assess.routes.network import Blocked, Course, IsBlocked, build_course
+from assess.routes.network import Blocked, IsBlocked, build_course
 from assess.routes.obstructions import Obstructions, is_walled_off
 from assess.routes.widths import kinds_of
 from assess.settings import Settings
@@ -52,7 +52,10 @@ class Outlook(TypedDict):
 
 @dataclass(frozen=True, slots=True)
 class Settled:
-    """A state, and the chances that it follows from: with unconfirmed pieces standing, and with them fallen."""
+    """A state, and the chances that it follows from: with unconfirmed pieces standing, and with them fallen.
+
+    `under_record` is the state under the recorded motion itself, where that is known.
+    """
 
     verdict: Verdict
     standing: Sequence[Chance]
@@ -140,8 +143,8 @@ class Scene:
         """Return the segments of a route by their number."""
         return {at: one.segment for at, one in enumerate(self.obstructions) if one.segment.route == route}
 
-    def course(self, segments: Mapping[int, Segment]) -> Course:
-        """Return how some segments make up a route."""
+    def course(self, segments: Mapping[int, Segment]) -> IsBlocked:
+        """Return when a route of some segments counts as blocked."""
         return build_course(segments, kinds_of(self.inventory.places))
 
     def missing(self, segment: int) -> tuple[MissingRow, ...]:
@@ -376,7 +379,11 @@ class Scene:
         It is not known where it could be another, unless it is blocked at best. `judged` are its chances, where known.
         """
         standing, fallen = (judged.chances, judged.at_most) if judged else self.bounds(segments, happens)
-        any_falls, record = self.any_left_out_falls(segments), self.under_record(segments, happens)
+        any_falls, keys, record = self.any_left_out_falls(segments), self.keys(segments), None
+        known = self.falls.in_record[np.array([item for item, _ in keys], dtype=np.intp)]
+        if keys and not np.isnan(known).all():  # pieces of which that is not known count as standing
+            blocked, *_ = happens(Draws.of(keys, known[np.newaxis] == 1, np.ones(1)))
+            record = RouteState.BLOCKED if blocked else RouteState.OPEN
         at_most = [combine(one[1], one[2], any_falls) for one in (standing, fallen)]
         best, if_missing, if_fallen, worst = (
             find_state(one, self.risk, record) for one in (standing[0], at_most[0], fallen[0], at_most[1])
@@ -415,12 +422,3 @@ class Scene:
             )
         chances = {at: chance.probability for at, (_, chance) in rows.items() if chance and chance.high > 0}
         return max(chances, key=lambda at: chances[at], default=None)
-
-    def under_record(self, segments: Collection[int], happens: Happens) -> RouteState | None:
-        """Return the state under the recorded motion itself; pieces of which that is not known count as standing."""
-        keys = self.keys(segments)
-        known = self.falls.in_record[np.array([item for item, _ in keys], dtype=np.intp)]
-        if not keys or np.isnan(known).all():
-            return None
-        blocked, *_ = happens(Draws.of(keys, known[np.newaxis] == 1, np.ones(1)))
-        return RouteState.BLOCKED if blocked else RouteState.OPEN

@@ -120,7 +120,7 @@ def test_a_route_is_blocked_where_one_of_its_rooms_is_cut_off(drawn, data):
     segments = {at: stretch(str(at), one, other) for one, other, at in graph.edges(keys=True)}
     width = max(segments) + 1
     row = np.array(data.draw(st.lists(st.booleans(), min_size=width, max_size=width)), dtype=np.bool_)
-    is_blocked = bool(build_course(segments, kinds).is_blocked({at: int(one) for at, one in enumerate(row)}, 1))
+    is_blocked = bool(build_course(segments, kinds)({at: int(one) for at, one in enumerate(row)}, 1))
     open_graph: nx.MultiGraph[str] = nx.MultiGraph()
     open_graph.add_nodes_from(graph)
     open_graph.add_edges_from((one, other) for one, other, at in graph.edges(keys=True) if not row[at])
