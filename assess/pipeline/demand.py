@@ -61,15 +61,6 @@ class Drawn:
         """Whether nothing is known of the building, nor of the floor's height."""
         return self.building.period is None and self.target.place is None
 
-    def scaled(self, factor: float) -> "Drawn":
-        """Return it with every motion multiplied by a factor [-]."""
-        target = self.target
-        anchors = tuple((place, factor * pfa) for place, pfa in target.anchors)
-        scaled = replace(
-            target, pfa=factor * target.pfa, pfv=factor * target.pfv, factor=factor * target.factor, anchors=anchors
-        )
-        return replace(self, target=scaled)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Demand:
@@ -120,14 +111,15 @@ class Demand:
         """Return it with its motion multiplied by a factor [-]; the record stays as it is in its file."""
         if factor == 1.0:
             return self
-        motion = self.motion and replace(
-            self.motion, acceleration=factor * self.motion.acceleration, velocity=factor * self.motion.velocity,
-            displacement=factor * self.motion.displacement,
-        )  # fmt: skip
-        return replace(
-            self, pfa=factor * self.pfa, pfv=factor * self.pfv, motion=motion, scale=factor * self.scale,
-            drawn=self.drawn and self.drawn.scaled(factor),
-        )  # fmt: skip
+        series = ("acceleration", "velocity", "displacement")
+        motion = self.motion and replace(self.motion, **{one: factor * getattr(self.motion, one) for one in series})
+        drawn, target = self.drawn, self.drawn and self.drawn.target
+        if drawn and target:
+            anchors = tuple((place, factor * pfa) for place, pfa in target.anchors)
+            peaks = {name: factor * getattr(target, name) for name in ("pfa", "pfv", "factor")}
+            drawn = replace(drawn, target=replace(target, **peaks, anchors=anchors))
+        scaled = {name: factor * getattr(self, name) for name in ("pfa", "pfv", "scale")}
+        return replace(self, **scaled, motion=motion, drawn=drawn)
 
     @property
     def label(self) -> str:

@@ -212,15 +212,16 @@ def build_ensembles(
     signs = find_phase_signs(every, grid, building.azimuth_deg)
     of_record = {(id(one.record), one.axis): found for one, found in signs.items()}
 
-    def build(one: Demand) -> GeneratedEnsemble | DrawnEnsemble:
+    found: list[GeneratedEnsemble | DrawnEnsemble] = []
+    for one in chosen:
         if one.drawn is None:
-            return GeneratedEnsemble(one, grid, seed, signs.get(one))
-        building, shaken = replace(one.drawn.building, number=number), replace(one.drawn.ground, number=number)
-        own = replace(one.drawn, building=building, ground=shaken)
-        ground = own.record and of_record.get((id(own.record.record), own.record.axis))
-        return DrawnEnsemble(one, own, grid, seed, ground or None)
-
-    return tuple(map(build, chosen))
+            found.append(GeneratedEnsemble(one, grid, seed, signs.get(one)))
+            continue
+        shaken, ground = replace(one.drawn.building, number=number), replace(one.drawn.ground, number=number)
+        own = replace(one.drawn, building=shaken, ground=ground)
+        of_ground = own.record and of_record.get((id(own.record.record), own.record.axis))
+        found.append(DrawnEnsemble(one, own, grid, seed, of_ground or None))
+    return tuple(found)
 
 
 _HUNDREDTHS = re.compile(r":\d\d\.\d\d")

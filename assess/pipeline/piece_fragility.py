@@ -15,7 +15,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Literal, TypeVar, get_args
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -56,8 +56,6 @@ RUNGS = (
 """Levels of a decade: the preferred numbers R20 of ISO 3, 12 % apart."""
 MORE_RUNGS = 6
 """Rungs that are added at a time: a factor of two."""
-
-_Choice = TypeVar("_Choice", bound=str)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -190,7 +188,12 @@ def find_piece_fragilities(
     settings = assessment.settings
     if settings.runs == AUTO or assessment.suite is not None:
         raise InputError.about('runs: a fragility needs a fixed number of generated motions, not "auto" or a suite')
-    by, im = _choose("by", by, BY), _choose("im", im, MEASURES)
+    for name, text, choices in (("by", by, BY), ("im", im, MEASURES)):
+        if text not in choices:
+            known = ", ".join(choices)
+            raise InputError.about(
+                "{name} is {text!r}, expected one of: {known}", name=name, text=str(text), known=known
+            )
     if levels is not None:
         levels = [float(one) for one in levels]
         is_rising = all(one < other for one, other in pairwise(levels))
@@ -232,13 +235,6 @@ def find_piece_fragilities(
         )
 
     return progress.wait_for(find)
-
-
-def _choose(name: str, text: _Choice, choices: tuple[str, ...]) -> _Choice:
-    if text not in choices:
-        known = ", ".join(choices)
-        raise InputError.about("{name} is {text!r}, expected one of: {known}", name=name, text=str(text), known=known)
-    return text
 
 
 # ---------------------------------------------------------------- rocking

@@ -29,24 +29,13 @@ from assess.pipeline.anchors import anchor_first, anchor_named, find_held, find_
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import check_draws, find_earthquakes, number_pieces
 from assess.pipeline.demand import Demand, Demands, build_demands, scale_demands
-from assess.pipeline.remarks import list_too_low, remark
+from assess.pipeline.remarks import remark
 from assess.pipeline.schedule import build_schedule, list_entries
 from assess.pipeline.series import build_series, write_series
-from assess.pipeline.tables import (
-    add_annual,
-    build_cases,
-    build_draws,
-    build_floor,
-    build_items,
-    build_motions,
-    build_provenance,
-    choose_example,
-    list_demands,
-    work_example,
-)
+from assess.pipeline.tables import add_annual, build_rows, list_demands
 from assess.pipeline.verify import choose_motions, find_peak, find_uncertainty, remark_suite, verify
 from assess.progress import SILENT, Listener, Progress
-from assess.results import Results, Series
+from assess.results import Results
 from assess.route_results import RouteTables
 from assess.routes.walls import find_walls, remark_on_walls
 from assess.settings import CLASS_BY, SCENARIOS, Settings, change_settings
@@ -55,7 +44,6 @@ if TYPE_CHECKING:
     from assess.motion.suite import Suite
     from assess.routes.obstructions import Obstructions
 
-SERIES = "series.npz"
 NO_SERIES = Path("no-series")
 """The name of a folder that does not exist, where no series are wanted."""
 
@@ -220,7 +208,7 @@ def build_results(
         folder = make_folder(Path(tempfile.gettempdir()), "assess-") if figures else NO_SERIES
 
     def build() -> Results:
-        results = _build_rows(assessment, demands, folder, evaluate_route_tables(assessment, progress))
+        results = build_rows(assessment, demands, folder, evaluate_route_tables(assessment, progress))
         schedule = build_schedule(
             results, assessment.inventory, lambda held: evaluate_route_tables(assessment, progress, held)
         )
@@ -248,34 +236,8 @@ def build_results(
 
 def list_first_fixes(assessment: Assessment, routes: RouteTables) -> list[list[int]]:
     """Return the pieces (indices) of each entry of the schedule, in its order, without what comes of them."""
-    results = _build_rows(assessment, list_demands(assessment), NO_SERIES, routes)
+    results = build_rows(assessment, list_demands(assessment), NO_SERIES, routes)
     return [[one.item.index for one in entry] for entry in list_entries(tuple(results), routes.routes)]
-
-
-def _build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path, routes: RouteTables) -> Results:
-    """Return the results but for their schedule."""
-    inventory, example = assessment.inventory, choose_example(assessment)
-    found = list_too_low(assessment.inventory, assessment.filled, assessment.scenario)
-    return Results(
-        settings=assessment.settings,
-        provenance=build_provenance(assessment),
-        building=inventory.building,
-        floor_rows=tuple(map(build_floor, inventory.floors)),
-        motions=build_motions(assessment, demands),
-        item_rows=build_items(assessment, routes),
-        cases_table=build_cases(assessment, demands),
-        route_tables=routes,
-        annual=None if assessment.annual is None else assessment.annual.tables,
-        places=inventory.places,
-        catalogue=inventory.catalogue,
-        problem_rows=assessment.problems,
-        underestimates=tuple(problem.message for problem in found),
-        methods=tuple(one.info for one in assessment.methods),
-        worked=() if example is None else tuple(work_example(example, assessment)),
-        worked_item=example,
-        series=Series(folder / SERIES),
-        draws=build_draws(assessment),
-    )
 
 
 def _pair(

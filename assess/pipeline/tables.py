@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, fields, replace
 from operator import attrgetter
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -11,13 +12,14 @@ import numpy as np
 from assess.annual_results import AnnualWays
 from assess.methods import Example, simulation
 from assess.methods.simulate import LOOKS, interval_width
-from assess.model import AXES, Floor, Item
+from assess.model import AXES, Item
 from assess.motion.record import treatment
 from assess.motion.scenario import PROFILES
 from assess.pipeline.anchors import build_anchors
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import describe_draws
 from assess.pipeline.demand import Demand, find_shaking, find_site
+from assess.pipeline.remarks import list_too_low
 from assess.results import (
     CaseTable,
     DrawTable,
@@ -26,6 +28,8 @@ from assess.results import (
     ItemRow,
     MotionRow,
     Provenance,
+    Results,
+    Series,
     SuiteInfo,
     WorkedMethod,
 )
@@ -61,13 +65,50 @@ def _shared(row: Any, source: type) -> list[str]:
     return [name for name in names if hasattr(source, name) or name in source.__annotations__]
 
 
+def build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path, routes: "RouteTables") -> Results:
+    """Return the results but for their schedule; `folder` is that of their series."""
+    inventory, example = assessment.inventory, choose_example(assessment)
+    found = list_too_low(inventory, assessment.filled, assessment.scenario)
+    place = {demand: index for index, demand in enumerate(demands)}
+    falls = assessment.find_falls()
+    draws, is_known = min((one.size for one in falls.fell.values()), default=0), falls.stands.copy()
+    fell = np.zeros((len(inventory.items), draws), dtype=np.bool_)
+    for item, one in falls.fell.items():
+        fell[item], is_known[item] = one[:draws], True
+    return Results(
+        settings=assessment.settings,
+        provenance=build_provenance(assessment),
+        building=inventory.building,
+        floor_rows=tuple(
+            _copy(
+                FloorRow, floor, elevation_m=floor.elevation, cells=dict(floor.cells),
+                plan=None if floor.plan is None else replace(floor.plan, content=b""),
+            )
+            for floor in inventory.floors
+        ),
+        motions=build_motions(assessment, demands),
+        item_rows=build_items(assessment, routes),
+        cases_table=CaseTable(  # every pair of piece and motion with what each method gives
+            item=assessment.case_item.astype(np.int32),
+            motion=np.array([place[demand] for demand in assessment.case_demand], dtype=np.int32),
+            outcomes={key: replace(outcome, joints=()) for key, outcome in assessment.outcomes.items()},
+            adopted=asdict(assessment.adoption),
+        ),
+        route_tables=routes,
+        annual=None if assessment.annual is None else assessment.annual.tables,
+        places=inventory.places,
+        catalogue=inventory.catalogue,
+        problem_rows=assessment.problems,
+        underestimates=tuple(problem.message for problem in found),
+        methods=tuple(one.info for one in assessment.methods),
+        worked=() if example is None else tuple(work_example(example, assessment)),
+        worked_item=example,
+        series=Series(folder / "series.npz"),
+        draws=DrawTable(draws, np.packbits(fell, axis=1), is_known),
+    )  # fmt: skip
+
+
 # ---------------------------------------------------------------- floors and their motions
-
-
-def build_floor(floor: Floor) -> FloorRow:
-    """Return the row of a floor."""
-    plan = None if floor.plan is None else replace(floor.plan, content=b"")
-    return _copy(FloorRow, floor, elevation_m=floor.elevation, cells=dict(floor.cells), plan=plan)
 
 
 def list_demands(assessment: Assessment) -> list[Demand]:
@@ -174,29 +215,6 @@ def add_annual(tables: "RouteTables", ways: AnnualWays) -> "RouteTables":
         ),
         rooms=tuple(replace(one, annual=ways.rooms.get(one.room)) for one in tables.rooms),
     )
-
-
-def build_cases(assessment: Assessment, demands: Sequence[Demand]) -> CaseTable:
-    """Return every pair of piece and motion with what each method gives, as columns."""
-    place = {demand: index for index, demand in enumerate(demands)}
-    return CaseTable(
-        item=assessment.case_item.astype(np.int32),
-        motion=np.array([place[demand] for demand in assessment.case_demand], dtype=np.int32),
-        outcomes={key: replace(outcome, joints=()) for key, outcome in assessment.outcomes.items()},
-        adopted=asdict(assessment.adoption),
-    )
-
-
-def build_draws(assessment: Assessment) -> DrawTable:
-    """Return in which draws each item falls."""
-    falls, count = assessment.find_falls(), len(assessment.inventory.items)
-    draws = min((one.size for one in falls.fell.values()), default=0)
-    fell = np.zeros((count, draws), dtype=np.bool_)
-    for item, one in falls.fell.items():
-        fell[item] = one[:draws]
-    is_known = falls.stands.copy()
-    is_known[list(falls.fell)] = True
-    return DrawTable(draws, np.packbits(fell, axis=1), is_known)
 
 
 # ---------------------------------------------------------------- the worked example

@@ -356,22 +356,17 @@ ALL = "all"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Calibrated:
-    """Floor motions of one kind: the trials, their cases, and the scores of all and of each class of chance."""
+    """Floor motions of one kind: the trials, their cases, and the scores of all and of each class of chance.
+
+    `sources` is the number of sites and axes, `factors` are those by which floor motions are scaled [-].
+    """
 
     tried: Sequence[Tried]
     outcomes: Outcomes
     whole: Score
     classes: Mapping[RiskClass, Score]
-
-    @property
-    def sources(self) -> int:
-        """Number of sites and axes."""
-        return int(np.unique(self.outcomes.source).size)
-
-    @property
-    def factors(self) -> list[float]:
-        """Factors by which floor motions are scaled [-]."""
-        return [float(one) for trial in self.tried for one in trial.factors]
+    sources: int
+    factors: Sequence[float]
 
 
 def run(options: Options) -> Finding:
@@ -414,7 +409,8 @@ def calibrate(tried: Sequence[Tried]) -> Calibrated:
     whole = find_score(outcomes)
     if whole is None:
         raise ValueError("there is no floor motion to score")
-    return Calibrated(tried, outcomes, whole, by_class(outcomes))
+    factors = [float(one) for trial in tried for one in trial.factors]
+    return Calibrated(tried, outcomes, whole, by_class(outcomes), int(np.unique(outcomes.source).size), factors)
 
 
 def collect(found: Mapping[str, Calibrated], options: Options) -> dict[str, object]:

@@ -48,15 +48,10 @@ class Contours:
     pfa: FloatArray
     risk: dict[str, FloatArray]
 
-    def find_falls(self, panel: str) -> FloatArray:
-        """Return the decreases of the risk of a piece from one PFA to the next larger one [-]."""
-        steps = -np.diff(self.risk[panel], axis=0)
-        return np.asarray(steps[steps > 1e-9])
-
-    def find_rises(self, panel: str) -> FloatArray:
-        """Return the increases of the risk from one piece to the next broader one [-]."""
-        steps = np.diff(self.risk[panel], axis=1)
-        return np.asarray(steps[steps > 1e-9])
+    def find_irregular(self, panel: str) -> tuple[FloatArray, FloatArray]:
+        """Return the falls of the risk with PFA, and its rises from one piece to the next broader one [-]."""
+        falls, rises = -np.diff(self.risk[panel], axis=0), np.diff(self.risk[panel], axis=1)
+        return np.asarray(falls[falls > 1e-9]), np.asarray(rises[rises > 1e-9])
 
     def refine(self, panel: str) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return breadths [m], PFA [m/s2] and risks to draw: for a formula, which may jump, on a finer grid."""
@@ -109,8 +104,7 @@ def run(options: Options) -> Finding:
 
 def count_irregular(every: Sequence[Contours], panel: str) -> dict[str, float]:
     """Return the numbers of `falls` and `rises`, and the largest of each [-], `by` and `over`."""
-    falls = np.concatenate([one.find_falls(panel) for one in every])
-    rises = np.concatenate([one.find_rises(panel) for one in every])
+    falls, rises = map(np.concatenate, zip(*(one.find_irregular(panel) for one in every), strict=True))
     return {"falls": falls.size, "by": falls.max(initial=0), "rises": rises.size, "over": rises.max(initial=0)}
 
 

@@ -61,7 +61,7 @@ class Station:
     """One line of the paper's Table 1.
 
     `storeys` are those above the ground, `height` [m] is that of the building, `pga` [m/s2] that at the base, by
-    direction; empty where it is not printed.
+    direction; empty where it is not printed. `period` is T1 as estimated from the height [s].
     """
 
     number: str
@@ -70,11 +70,7 @@ class Station:
     storeys: int
     height: float
     pga: Mapping[str, float]
-
-    @property
-    def period(self) -> float:
-        """T1 as estimated from the height [s]."""
-        return estimate_period(self.height) or 0.0
+    period: float
 
 
 def read_stations() -> list[Station]:
@@ -82,7 +78,7 @@ def read_stations() -> list[Station]:
     return [
         Station(
             number=row["id"], name=row["station"], earthquake=row["earthquake"], storeys=int(row["storeys"]),
-            height=float(row["height_in"]) * LENGTH["in"],
+            height=(height := float(row["height_in"]) * LENGTH["in"]), period=estimate_period(height) or 0.0,
             pga={one: float(row[f"pga_{one}_g"]) * GRAVITY for one in DIRECTIONS if row[f"pga_{one}_g"]},
         )
         for row in read_facts("table1_buildings")
@@ -102,11 +98,7 @@ class Level:
     place: float
     pfa: float
     pfv: float
-
-    @property
-    def is_roof(self) -> bool:
-        """Whether it is the roof."""
-        return self.number == self.station.storeys + 1
+    is_roof: bool
 
 
 def climb(station: Station, period: float) -> Iterator[Level]:
@@ -115,7 +107,7 @@ def climb(station: Station, period: float) -> Iterator[Level]:
         for number in range(1, station.storeys + 2):
             place = (number - 1) / station.storeys
             by_pga, by_pgv = find_medians(period, place, UNKNOWN, RATIO)
-            yield Level(station, direction, number, place, pga * by_pga, pga * RATIO * by_pgv)
+            yield Level(station, direction, number, place, pga * by_pga, pga * RATIO * by_pgv, is_roof=place == 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -25,7 +25,7 @@ def test_the_channel_of_the_highest_risk_as_recorded_is_drawn():
         own = [other.trials for other in judged if other.building == one.compared.building]
         assert one.compared.trials is max(own, key=lambda other: other.pfv[RECORDED])
         assert one.risk[DIRECT].shape == (len(LEVELS), one.breadth.size) == (17, 17)
-        assert one.find_falls(DIRECT).size == one.find_rises(DIRECT).size == 0
+        assert one.find_irregular(DIRECT)[0].size == one.find_irregular(DIRECT)[1].size == 0
     judged = make_compared(lambda b, _h, _a, _v: 0 * b, OPTIONS)  # nothing falls: that of the largest PFA
     for one in choose_contours(judged):
         own = [other.trials for other in judged if other.building == one.compared.building]
@@ -39,8 +39,8 @@ def test_irregular_steps_are_measured():
         return np.where((pfa > 4.9) & (pfa < 5.3), 0.2, 0.5) + np.where(breadth > 0.6, 0.1, 0.0)
 
     for one in choose_contours(make_compared(chance, OPTIONS)):
-        assert one.find_falls(DIRECT) == pytest.approx(np.full(one.breadth.size, 0.3))
-        assert one.find_rises(DIRECT) == pytest.approx(np.full(one.pfa.size, 0.1))
+        assert one.find_irregular(DIRECT)[0] == pytest.approx(np.full(one.breadth.size, 0.3))
+        assert one.find_irregular(DIRECT)[1] == pytest.approx(np.full(one.pfa.size, 0.1))
 
 
 def test_equation_9_is_irregular_where_its_coefficients_say():
@@ -52,9 +52,9 @@ def test_equation_9_is_irregular_where_its_coefficients_say():
         - 0.000001941 * y[:, None] ** 2 - 0.00010152672 * y[:, None] / x
     )  # fmt: skip
     steps = np.diff(np.clip(grid, 0, 1), axis=0)
-    assert one.find_falls(PRINTED) == pytest.approx(-steps[steps < 0])
-    assert one.find_falls(PRINTED).size > 0
-    assert one.find_falls("proposed_or").size == one.find_rises("proposed_or").size == 0
+    assert one.find_irregular(PRINTED)[0] == pytest.approx(-steps[steps < 0])
+    assert one.find_irregular(PRINTED)[0].size > 0
+    assert one.find_irregular("proposed_or")[0].size == one.find_irregular("proposed_or")[1].size == 0
     breadth, pfa, risk = one.refine("kaneko_hayashi")  # what is drawn between is the formula itself
     method = next(method for method in all_methods() if method.key == "kaneko_hayashi")
     at, block = 40, 90

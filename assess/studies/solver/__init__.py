@@ -97,14 +97,6 @@ class Solver:
     rtol: float = 1e-5
     atol: float = 1e-7
 
-    @property
-    def options(self) -> dict[str, Any]:
-        """Keyword arguments of `solve_ivp`."""
-        from assess.studies.solver.ode23s import Ode23s
-
-        method = Ode23s if self.method == "ODE23s" else self.method
-        return {"method": method, "rtol": self.rtol, "atol": self.atol, "first_step": FIRST}
-
 
 @dataclass(slots=True, eq=False)
 class Response:
@@ -132,6 +124,8 @@ def follow(case: Case, amplitude: float, solver: Solver, until: float = 0.0) -> 
         return _follow_by_kernel(case, amplitude, until)
     from scipy.integrate import solve_ivp
 
+    from assess.studies.solver.ode23s import Ode23s
+
     response, edge, velocity = Response(), -1.0, 0.0
     time, depth = case.start(amplitude, 0.0), ALPHA**2 / 2 if case.is_linear else 1 - math.cos(ALPHA)
 
@@ -143,8 +137,9 @@ def follow(case: Case, amplitude: float, solver: Solver, until: float = 0.0) -> 
     while time < math.inf and (time < max(until, case.end) or velocity**2 / 2 >= P**2 * depth):  # it can still fall
         span = (time, time + LONGEST)  # from a start or an impact to the next impact, or to the fall
         found = solve_ivp(
-            rates, span, [0.0, velocity], events=[_strike, _fall], dense_output=until > 0, **solver.options
-        )
+            rates, span, [0.0, velocity], Ode23s if solver.method == "ODE23s" else solver.method, rtol=solver.rtol,
+            atol=solver.atol, first_step=FIRST, events=[_strike, _fall], dense_output=until > 0,
+        )  # fmt: skip
         if found.status != 1:
             raise ArithmeticError(f"{solver.name} at {amplitude:g} alpha g: {found.message}")
         since, time, velocity = time, float(found.t[-1]), float(found.y[1, -1])
