@@ -26,21 +26,15 @@ if TYPE_CHECKING:
 class Assessment:
     """What a run computes with; `assess.pipeline.run.compute` makes it.
 
-    * `inventory`, `settings`: what was assessed, and how.
     * `scenario`: where the floor motion came from, one of `assess.settings.SCENARIOS`.
     * `suite`: the user's own motions, where they stood in for generated ones.
     * `filled`, `demands`: how every floor shakes, as the workbook says and with the settings' factor on it.
-    * `methods`: the methods, in the order of reports.
     * `cases`: n pairs of piece and motion: every piece under every motion of its axis, or of both where its axis is
       blank.
     * `case_item`, `case_demand` (n,): which item (its index in the inventory) and which demand each case has.
-    * `outcomes`: what each method gives for all cases.
-    * `adoption`: the risk that is adopted for each case.
+    * `outcomes`, `adoption`: what each method gives for all cases, and the risk that is adopted for each.
     * `either_axis`: of each piece that may topple along both axes, in which draws it does along either.
-    * `governing` (items,): index of each item's governing case.
-    * `held` (items,): which count as anchored.
-    * `obstructions`: what can reach the segments of evacuation routes.
-    * `problems`: warnings and notes about the input.
+    * `governing`, `held` (items,): index of each item's governing case, and which items count as anchored.
     * `annual`: annual chances; None where the workbook names no hazard file.
     """
 

@@ -32,9 +32,7 @@ class DrawSums:
       piece in a number of draws of its own.
     * `people_blocked`, `routes_blocked` (runs,): people whose route is blocked in each draw, and routes, of those with
       joint outcomes; None likewise.
-    * `joint_routes`: those routes.
-    * `people_expected`, `routes_expected`: expected numbers of people whose route is blocked, and of routes, of all
-      that are known.
+    * `people_expected`, `routes_expected`: expected numbers of the same, of all routes that are known.
     * `people_apart`, `routes_apart`: the part of them that is in no draw: of routes without joint outcomes.
     * `people_not_known`: people on routes whose state is not known: they are in none of these numbers.
     """

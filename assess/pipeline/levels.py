@@ -50,13 +50,11 @@ class RockedLevels:
 class Sweep:
     """What is rocked at several levels.
 
-    * `assessment`: gives the piece and the motion of each of n cases.
-    * `cases`: those with an ensemble are rocked.
+    * `cases`: those (n) of the `assessment`; those with an ensemble are rocked.
     * `peaks` (n,): where among the levels the motions of each case are as they are: they are multiplied by the ratio.
     * `settings`: give the number of draws, which has to be a number, and their seed.
     * `dispersion` (n,): of the motion's amplitude [-], with pieces drawn as the cases say; None: motions and pieces as
       they are.
-    * `jobs`: threads; they do not change a result.
     * `opened`: motions that are ready, by the number of their ensemble; takes up to `MOST_OPENED` for further calls.
     * `progress`: receives the stage "rocking".
     """

@@ -101,11 +101,9 @@ class PieceFragility:
     """One curve.
 
     * `name`: the item, the type, or the sizes of rows without a type.
-    * `type`: of its rows; "" where they have none.
     * `items`: its rows, in the order of the workbook.
     * `curve`: how many fell at each level [m/s2] or [m/s], and the lognormal fitted to it. Of an item the trials are
       draws; of a type each row counts by its Quantity, as all pieces of a row fall alike.
-    * `motions`: those under which they were rocked.
     """
 
     name: str
@@ -147,10 +145,8 @@ class PieceFragilities:
     """The curves of a workbook.
 
     * `by`, `im`: what has one curve, of `BY`; the intensity measure of the levels, of `MEASURES`.
-    * `runs`, `seed`: number of draws at each level, and their seed.
     * `has_drawn_pieces`: whether each draw has a base, height, centre of gravity and restitution of its own; else
       pieces are as given.
-    * `curves`: in the order of the workbook.
     * `stocky`: rows that are too stocky to rock, and left out.
     """
 

@@ -52,8 +52,6 @@ MOST_INSERTED = 24
 class RouteFragility:
     """One route.
 
-    * `route`: its name.
-    * `floors`: floors of its segments.
     * `blocked`: of its being blocked at each value, if all anchors hold.
     * `if_anchors_fail`: the same with anchored pieces taken as free-standing; None where there are none.
     * `is_evaluated`: whether it is known of any of its segments what can reach it.

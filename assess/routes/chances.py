@@ -42,7 +42,6 @@ NONE, EVERY = 0b01, 0b10
 class Falls:
     """How the n pieces of an inventory fall, each under its governing motion.
 
-    * `probability` (n,): adopted chance of overturning [-].
     * `high` (n,): the upper end of its interval; the chance itself where there is none [-].
     * `fell`: for a simulated piece (by its index) whether it overturned, draw by draw.
     * `unconfirmed`: for a piece whose adopted chance is the formula's, as a lower one was simulated that cannot be
@@ -51,7 +50,6 @@ class Falls:
       not known.
     * `stands` (n,): pieces that cannot rock: they block nothing.
     * `anchored` (n,): pieces whose fall depends on an anchor; their outcomes are those of a free-standing piece.
-    * `quantity` (n,): pieces in the row.
     """
 
     probability: FloatArray

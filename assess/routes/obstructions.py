@@ -44,8 +44,7 @@ SIDES: tuple[Literal["left", "right"], ...] = ("left", "right")
 class Obstacle:
     """Something that lies in a segment: a piece on the plan, or one that takes `depth` from a side.
 
-    * `item`: index of the piece in the inventory.
-    * `number`: 0, or 1 for a second piece of the same row.
+    * `number`: 0, or 1 for a second piece of the same row of the inventory, `item`.
     * `falls`: whether the piece has to fall for it to be there; else it stands there anyway.
     * `left`, `right`: gaps to the two walls [m].
     * `shape`: what it covers, in the band's own coordinates; None where its place along the segment is not known.
@@ -70,7 +69,6 @@ class Obstacle:
 class Gaps:
     """All obstacles of a segment.
 
-    * `keys`: the pieces that may fall.
     * `column` (m,): which of `keys` each obstacle needs; -1 where it stands there anyway.
     * `left`, `right` (m,): gaps to the walls [m].
     * `between` (m, m): gaps between two obstacles [m]; inf where the two cannot be there together.

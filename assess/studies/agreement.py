@@ -43,7 +43,6 @@ def evaluate_formulas(cases: Cases, settings: Settings) -> dict[str, FloatArray]
 class Agreement:
     """How n chances by a formula agree with those by direct integration.
 
-    * `cases`: n.
     * `bias`, `scatter`: mean and standard deviation of formula less integration [-].
     * `rank_correlation`: Spearman's [-]; NaN where either is constant.
     * `same_class`, `within_one_class`, `class_too_low`, `class_too_high`: shares of the cases [-]: in the class of the

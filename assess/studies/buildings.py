@@ -138,7 +138,6 @@ class Trials:
     * `fallen_uncertain` (a, b): the same where the amplitude of each motion and the piece are drawn
       (`assess.rocking.draws.Uncertainty`): as in the chances that `assess run` adopts.
     * `fell_in_record` (a, b): whether it overturned under the record itself, as scaled.
-    * `runs`: number of motions.
     * `mean_pfa`, `mean_pfv`: mean peaks of the motions over those of the record [-].
     """
 

@@ -161,7 +161,6 @@ class Surface:
     * `coefficients`: in the order of its powers; PFA in cm/s2.
     * `r2`, `adjusted_r2`, `aic`: shares of the variance explained [-]; AIC = n ln(RSS/n) + 2k of normal errors, k
       coefficients.
-    * `left_out`: errors for groups left out of the fit.
     * `condition`: condition number of the columns scaled to unit norm [-].
     """
 
@@ -395,8 +394,6 @@ class Fits:
     """The data, the surfaces ranked, and the probits.
 
     * `points`, `counts`: the n cases: every block at every common PFA under every channel.
-    * `ranked`: the surfaces in order.
-    * `probit`, `probit_without_pfv`: with PFV in it, and without.
     * `published`: errors of the formulas as published, by title.
     """
 

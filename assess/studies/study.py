@@ -84,12 +84,9 @@ class Finding:
     """The results of a study.
 
     * `page`: lines of Markdown: method, data and results, every number from the run.
-    * `summary`: sentences for the head of the page of all studies: how well formulas and reference agree.
-    * `overview`: lines of Markdown for that head.
+    * `summary`, `overview`: sentences and lines for the head of the page of all studies: how well formulas agree.
     * `failures`: sentences on where published formulas fail.
-    * `tables`: by the name of their .csv.
-    * `figures`: by the name of their file.
-    * `files`: other files, as text.
+    * `tables`, `figures`, `files`: by the names of their files; other files are text.
     """
 
     page: Sequence[str]

@@ -102,8 +102,7 @@ class Solver:
 class Response:
     """The response of a block.
 
-    * `overturned`: whether |theta| reached pi/2.
-    * `impacts`: impacts until the outcome was certain.
+    * `impacts`: impacts until the outcome was certain: |theta| reached pi/2, or it can no longer.
     * `evaluations`: of eq. 3, including those for derivatives; 0 for the kernel.
     * `times`, `theta` (t,): path [s, rad], if required; it ends with the fall, or at rest.
     """
