@@ -8,8 +8,9 @@ BIN := $(VENV)/bin
 # Tests start Python hundreds of times: what it compiles is kept, whatever the machine is set to.
 export PYTHONDONTWRITEBYTECODE :=
 
+# SINCE=commit leaves out studies, building models, the city or the page where neither they nor the core changed since.
 # A worker takes whole files, whose tests share what they set up; more than eight gain nothing and take memory.
-PYTEST := $(BIN)/python -m pytest -n auto --maxprocesses=8 --dist loadfile
+PYTEST := $(BIN)/python -m pytest -n auto --maxprocesses=8 --dist loadfile $(if $(SINCE),--since $(SINCE))
 SLOW := slow or browser or libreoffice or verapdf
 
 .PHONY: example test test-slow test-smoke test-long nets lint benchmark blank docs texts samples clean

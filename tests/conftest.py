@@ -5,7 +5,9 @@ import os
 import pickle
 import shutil
 import signal
+import subprocess
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -17,24 +19,53 @@ from docs.screenshot import find_browser
 from tests.waiting import PATIENCE
 from tests.workbooks import UNVERIFIED
 
-EXAMPLE = Path(__file__).parents[1] / "inventories" / "market-street.xlsx"
+ROOT = Path(__file__).parents[1]
+EXAMPLE = ROOT / "inventories" / "market-street.xlsx"
 FOREIGN_VARIABLES = (
     "COLUMNS", "LINES", "TERMINAL_WIDTH", "FORCE_COLOR", "NO_COLOR", "PY_COLORS", "CLICOLOR_FORCE", "TTY_COMPATIBLE",
     "TTY_INTERACTIVE", "GITHUB_ACTIONS", "SOURCE_DATE_EPOCH",
 )  # fmt: skip
 """Variables of a terminal or a build service that change what the command prints, or the date of a report."""
 
+STAND_ALONE = ("studies", "bim", "portfolio", "web")
+"""Packages that nothing of the core imports."""
+
 settings.register_profile("same", derandomize=True, deadline=None)  # the same draws everywhere, on slow machines too
 settings.register_profile("random", deadline=None, print_blob=True)  # other draws: `make test-long`
 settings.load_profile("same")
 
 
-def pytest_configure() -> None:
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Take the commit since which changes count: tests of packages that stand alone run if they or the core changed."""
+    parser.addoption("--since", metavar="COMMIT", default=os.environ.get("ASSESS_SINCE", ""))
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Leave out the tests of packages of which nothing has changed, nor anything of the core."""
+    return True if collection_path in _list_unchanged(config.getoption("--since")) else None
+
+
+@cache
+def _list_unchanged(since: str) -> frozenset[Path]:
+    if not since:
+        return frozenset()
+    command = ["git", "diff", "--name-only", "--no-renames", since]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise pytest.UsageError(f"--since {since}: {done.stderr.strip()}")
+    changed = [name.split("/") for name in done.stdout.splitlines()]
+    packages = {name[1] if name[0] in ("assess", "tests") and len(name) > 2 else "" for name in changed}
+    has_core = not packages <= {*STAND_ALONE}
+    return frozenset(ROOT / "tests" / one for one in STAND_ALONE if not has_core and one not in packages)
+
+
+def pytest_configure(config: pytest.Config) -> None:
     """Give commands that tests start what they would have in a plain terminal, and signals their usual effect.
 
     A shell makes what it starts in the background ignore SIGINT, nohup SIGHUP, and programs hand that down. They do not
     hand down a handler of their own, and this one keeps the tests running.
     """
+    _list_unchanged(config.getoption("--since"))  # refuses a commit that is unknown
     for name in FOREIGN_VARIABLES:
         os.environ.pop(name, None)
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

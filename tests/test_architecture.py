@@ -12,6 +12,7 @@ import pytest
 import assess
 from assess.methods import all_methods
 from docs.texts import KEYWORDS
+from tests.conftest import STAND_ALONE
 
 ROOT = Path(assess.__file__).parents[1]
 PACKAGE = ROOT / "assess"
@@ -41,6 +42,7 @@ LONGEST_FILE, LONGEST_FUNCTION = 800, 60
 LONG_FILES = {"assess/results.py"}  # the rows of every table
 LATE_IMPORTS = {("assess.results", "assess.fields")}
 """Allowed inside a function: tables are built from the fields, when they are asked for."""
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 PHYSICS = ("assess.methods", "assess.motion", "assess.rocking")
 DESCRIPTIONS = {"MethodInfo", "Reason", "Reference"}
 """Types in which a method describes itself: results hold them, and reports may import them from `assess.methods`."""
@@ -128,23 +130,47 @@ def test_no_loops_inside_a_layer():
             visit(module, [])
 
 
+def _typing_only(path: Path) -> set[int]:
+    """Return the nodes that serve type checkers alone."""
+    blocks = (one for one in _nodes(path) if isinstance(one, ast.If) and "TYPE_CHECKING" in ast.unparse(one.test))
+    return {id(node) for block in blocks for node in ast.walk(block)}
+
+
+def _imported(path: Path) -> Iterator[tuple[ast.Import | ast.ImportFrom, list[str]]]:
+    """Yield what a file imports, but for type checkers alone: the statements and the modules."""
+    typing_only = _typing_only(path)
+    for node in _nodes(path):
+        if isinstance(node, ast.ImportFrom) and id(node) not in typing_only:
+            yield node, [node.module or ""]
+        elif isinstance(node, ast.Import) and id(node) not in typing_only:
+            yield node, [alias.name for alias in node.names]
+
+
+def test_packages_that_stand_alone_are_imported_by_their_commands_alone_and_late():
+    """Studies, building models, the city and the page: the core does without them, and so do they without each other.
+
+    Where one makes use of another, as the city does of COBie files, it imports it inside the function that needs it.
+    """
+    found = []
+    for path in MODULES:
+        own = path.relative_to(PACKAGE).parts[0]
+        late = {id(node) for one in _nodes(path) if isinstance(one, FUNCTIONS) for node in ast.walk(one)}
+        for node, named in _imported(path):
+            others = {name.split(".")[1] for name in named if name.startswith("assess.")} & {*STAND_ALONE} - {own}
+            if others and (own not in (*STAND_ALONE, "cli") or id(node) not in late):
+                found.append(f"{_place(path, node)} {ast.unparse(node)}")
+    assert found == []
+
+
 def test_reports_import_no_physics():
     """What a report shows is in the results; a name that serves type checkers alone may be imported for them."""
-    found = []
-    for path in (PACKAGE / "report").rglob("*.py"):
-        typing_only = {
-            id(node)
-            for block in _nodes(path)
-            if isinstance(block, ast.If) and "TYPE_CHECKING" in ast.unparse(block.test)
-            for node in ast.walk(block)
-        }
-        for node in _nodes(path):
-            named = [node.module] if isinstance(node, ast.ImportFrom) and not _describes(node) else []
-            named += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-            if id(node) not in typing_only and any(
-                f"{name}.".startswith(f"{one}.") for name in named for one in PHYSICS
-            ):
-                found.append(f"{_place(path, node)} {ast.unparse(node)}")
+    found = [
+        f"{_place(path, node)} {ast.unparse(node)}"
+        for path in (PACKAGE / "report").rglob("*.py")
+        for node, named in _imported(path)
+        if not (isinstance(node, ast.ImportFrom) and _describes(node))
+        and any(f"{name}.".startswith(f"{one}.") for name in named for one in PHYSICS)
+    ]
     assert found == []
 
 

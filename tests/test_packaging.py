@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from assess.environment import say_install
+from tests.conftest import STAND_ALONE
 from tests.other_pythons import find_pythons, list_versions
 from tests.workbooks import write
 
@@ -133,3 +134,28 @@ def test_other_pythons_are_those_that_run_on_the_path_or_in_pyenv(tmp_path, monk
     places = {"3.11": "3.11.2", "3.12": "3.12.4"}
     expected = {one: str(tmp_path / "versions" / place / "bin/python") for one, place in places.items() if one != this}
     assert find_pythons() == expected
+
+
+_CORE = """
+import sys
+
+class Refuse:
+    def find_spec(self, name, path=None, target=None):
+        if name in {names}:
+            raise ImportError(name + " is not part of the core")
+
+sys.meta_path.insert(0, Refuse())
+from assess.__main__ import main
+sys.argv = ["assess", *{arguments}]
+main()
+"""
+
+
+@pytest.mark.slow
+def test_the_core_works_without_the_packages_that_stand_alone(tmp_path):
+    names = [f"assess.{one}" for one in STAND_ALONE]
+    for arguments in (["new", "office.xlsx", "--example"], ["run", "office.xlsx", "--verify", "none"], ["--help"]):
+        code = _CORE.format(names=names, arguments=arguments)
+        done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+    assert (tmp_path / "office-report" / "report.pdf").is_file()

@@ -1,5 +1,8 @@
 """The methods, found in this folder: a file that defines METHOD is one. Consumers ask for roles, never for keys.
 
+In: `Cases`, equal-length arrays in SI units, NaN for unknown. Out: `Outcome`, a value in [0, 1] or NaN for each case.
+May import: `rocking`, `motion` and what stands below. One publication is one file.
+
 `cases` is what they are evaluated on, `method` how one describes itself; `expression` writes their formulas, `simulate`
 is what simulations share, and `fitted` makes a method of a model that a study fitted.
 """

@@ -1,5 +1,11 @@
 """Reports: results in, files out, whole or not at all.
 
+In: `assess.results.Results` and nothing else. Out: PDF, HTML, Word, Excel, JSON, CSV, NRML and pelicun files.
+Way: `sections` turn results into blocks (`blocks`), with the sentences of `say`; HTML (`html_blocks`, `pages`; the
+PDF is the HTML with print CSS) and Word (`word`) render them; `xlsx` writes live formulas, `data` the tables.
+May import: `results`, `fields` and what stands below; of methods only how they describe themselves. Evaluates
+nothing.
+
 The reports in a folder are of one run. Every file is first written into a folder beside them, which then takes their
 place (`assess.delivery`): a disk that fills, or a process that is killed, leaves the reports of the earlier run as they
 were. A run replaces and removes only what results.json lists (`assess.report.ownership`), so that it always writes one.

@@ -1,4 +1,7 @@
-"""The paper repeated on open data, and its formulas compared with direct integration.
+"""The paper repeated on open data, and its formulas compared with direct integration. It stands alone.
+
+In: the records that come along, tables of the paper (`facts`). Out: tables, figures, files and a page for each study.
+May import: the core, and methods by name, which nothing else may. Nothing imports a study but its command.
 
 A study is a module of this folder, or a folder in it, that defines STUDY. Running one writes its tables, figures, files
 and page; there is a page of all as well.
