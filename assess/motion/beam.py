@@ -196,7 +196,8 @@ class FloorMotions:
         motions, target = _shake(self.beams, self.target, group), self.target
         if target.meets == "nothing":
             return motions
-        low, step = _split(motions, target, self.beams.grid), self.beams.grid.time_step
+        step = self.beams.grid.time_step
+        low = split_bands(motions, step, np.full(GROUP, target.corner))
         if target.meets == "peaks":
             meet_peaks(motions, low, step, np.full(GROUP, target.pfa), np.full(GROUP, target.pfv))
             return motions
@@ -213,15 +214,10 @@ def open_floor(beams: Beams, target: FloorTarget, threads: int, progress: Progre
         return FloorMotions(beams, target, 1.0, 1.0)
     make = partial(_shake, beams, target)
     motions = make_groups(make, 0, CALIBRATED, beams.grid.count, threads, progress)
-    low = _split(motions, target, beams.grid)
+    low = split_bands(motions, beams.grid.time_step, np.full(len(motions), target.corner))
     each = target.meets == "pfa"
     found = find_common(motions, low, beams.grid.time_step, target.pfa, target.pfv, each=each)
     return FloorMotions(beams, target, *found)
-
-
-def _split(motions: Single, target: FloorTarget, grid: Grid) -> Single:
-    corner = target.pfa / (2 * math.pi * target.pfv)
-    return split_bands(motions, grid.time_step, np.full(len(motions), corner))
 
 
 def _shake(beams: Beams, target: FloorTarget, group: int) -> Single:

@@ -98,9 +98,7 @@ class GroundScenarios:
                 file=self.file, count=end - first, events=self.event_count,
                 lat=float(self.latitude[nearest]), lon=float(self.longitude[nearest]),
             )  # fmt: skip
-        return self._describe(np.log(self.values[first:end]), distance)
-
-    def _describe(self, logs: FloatArray, distance: float) -> SiteGround:
+        logs = np.log(self.values[first:end])
         medians = dict(zip(self.measures, np.exp(logs.mean(axis=0)).tolist(), strict=True))
         ruling = logs[:, self.measures.index("gmv_PGV") if "gmv_PGV" in medians else 0]
         dispersion = float(ruling.std()) if len(logs) > 1 else 0.0
@@ -118,21 +116,16 @@ class GroundScenarios:
             kind="scenarios", file=self.file, sha256=self.hashes[0], pga=medians["gmv_PGA"] * GRAVITY,
             pgv=medians["gmv_PGV"] / 100 if "gmv_PGV" in medians else None,
             psa=tuple((period, medians[name] * GRAVITY) for name, period in _list_psa(self.measures)),
-            dispersion=dispersion,
+            dispersion=dispersion, distance=distance, scenarios=tuple(numbers.tolist()), cautions=tuple(cautions),
             dispersion_source=nfill(
-                "{file} holds {n:,} scenario alone",
-                "standard deviation of {n:,} scenarios of {file}",
-                len(logs),
+                "{file} holds {n:,} scenario alone", "standard deviation of {n:,} scenarios of {file}", len(logs),
                 file=self.file,
             ),
-            distance=distance,
-            scenarios=tuple(numbers.tolist()),
             facts=(
                 (fill("Scenarios"), nfill("{n:,} event", "{n:,} events", len(logs))),
                 (fill("Distance to the nearest site"), fill("{km:.1f} km", km=distance / 1000)),
                 (fill("File of sites"), fill("{file}, SHA-256 {sha256}", file=self.sites_file, sha256=self.hashes[1])),
             ),
-            cautions=tuple(cautions),
         )  # fmt: skip
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -46,8 +46,14 @@ class Sweep:
         deepest = min(max(math.ceil(math.log2(count / SHORTEST)), 0), DEEPEST)
         fewest = np.log2(np.maximum(periods / (FEWEST * time_step), 1.0))
         depths = np.minimum(np.floor(fewest + 1e-9), deepest).astype(np.int64)
-        steps = tuple((int(one), recurrence(periods[depths == one], time_step, int(one))) for one in np.unique(depths))
-        return cls(periods, time_step, depths, steps)
+        steps = []
+        for depth in np.unique(depths).tolist():
+            r0, r1, r2, r3, r4, r5, r6, r7, _, squared = oscillator_step(periods[depths == depth], time_step * 2**depth)
+            # c of u'' = c0 u' + c1 u + c2 a'' + c3 a' + c4 a, u in pseudo-acceleration
+            forced = squared * np.array([r5, r4 + r1 * r7 - r3 * r5, r1 * r6 - r3 * r4])
+            own = np.concatenate([[r0 + r3, r1 * r2 - r0 * r3], forced])
+            steps.append((depth, _fill_lanes(own.astype(np.float32))))
+        return cls(periods, time_step, depths, tuple(steps))
 
     def take(self, places: NDArray[np.int64]) -> "Sweep":
         """Return the sweep of the periods at ascending `places`."""
@@ -79,16 +85,6 @@ class Sweep:
     def spectra(self, motions: Single) -> Single:
         """Return the pseudo-accelerations of motions (k, n), (k, m)."""
         return np.abs(self.peaks(motions)[0])
-
-
-def recurrence(periods: FloatArray, time_step: float, depth: int) -> Single:
-    """Return c (5, lanes) of u'' = c0 u' + c1 u + c2 a'' + c3 a' + c4 a, u in pseudo-acceleration.
-
-    Motions have been halved `depth` times.
-    """
-    r0, r1, r2, r3, r4, r5, r6, r7, _, squared = oscillator_step(periods, time_step * 2**depth)
-    forced = squared * np.array([r5, r4 + r1 * r7 - r3 * r5, r1 * r6 - r3 * r4])
-    return _fill_lanes(np.concatenate([[r0 + r3, r1 * r2 - r0 * r3], forced]).astype(np.float32))
 
 
 def _fill_lanes(step: Single) -> Single:
