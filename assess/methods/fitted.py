@@ -317,7 +317,7 @@ ERRORS = {"leave_one_out_rmse": "error", "leave_one_out_standard_error": "spread
 """Keys of the errors, and their names in `FittedOn`."""
 KINDS = {"polynomial": ("base", "terms"), "probit": ("b0", "b1", "b2")}
 KEY = re.compile(rf"{PREFIX}[a-z0-9_]{{1,40}}(?<!_raw)(?<!_flags)", re.ASCII)
-"""The endings are those of columns that stand beside a method's value."""
+"""The endings are those of columns next to a method's value."""
 
 
 def write_model(model: Fitted) -> str:

@@ -242,7 +242,7 @@ class Outcome:
 
     * `value` (n,): for a probability: the chance of overturning in [0, 1]. For a criterion: 1 met, 0 not met. NaN: not
       evaluated.
-    * `detail`: what stands beside the value, ``raw`` or a median, under the name it has in results.json.
+    * `detail`: further results, such as ``raw`` or a median, under the name it has in results.json.
     * `flags` (n,): where a caution holds; the flag's meaning stands in `Method.flags`.
     * `joints`: what a method that integrates found, motion by motion.
     """

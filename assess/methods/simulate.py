@@ -1,10 +1,10 @@
 """What simulations of many pieces under many motions share: batches, threads, draws, and what stands next to a chance.
 
-Slip and falls beside a wall are shown next to a chance, which they never lower. Slip is that of Newmark's block, which
-slides and does not rock: it depends on the friction and the motion alone, so that pieces of one friction on one floor
-share it. In a draw in which a piece does not slide by Shenton's limits, for the peak of that draw's motion and the
-piece as it is given, its slip is 0. One-sided falls are those of the piece with a wall at its back, under the same
-draws as its chance without one.
+Slip, and falls with a wall at the back, are shown next to a chance, which they never lower. Slip is that of Newmark's
+block, which slides and does not rock: it depends on the friction and the motion alone, so that pieces of one friction
+on one floor share it. In a draw in which a piece does not slide by Shenton's limits, for the peak of that draw's motion
+and the piece as it is given, its slip is 0. One-sided falls are those of the piece with a wall at its back, under the
+same draws as its chance without one.
 
 References: `assess.rocking.sliding` (Shenton 1996, Newmark 1965), `assess.rocking.planar` (Sorrentino et al. 2011).
 """

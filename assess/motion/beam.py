@@ -44,7 +44,7 @@ DAMPING = 0.05
 MODES, CELLS = 8, 80
 """Modes; cells of the beam."""
 PASSED = 50
-"""Beams by whose medians the peaks above a recorded ground are told."""
+"""Beams by whose medians the peaks above a recorded ground are estimated."""
 RIGID_BELOW = 0.03
 """Modes of shorter period move with the ground [s]."""
 KEPT: Kept[Single] = Kept(160_000_000)

@@ -22,11 +22,11 @@ STRUCTURES = ("unknown", "frame", "walls", "dual")
 ALIKE = {"timber": "frame", "masonry": "dual"}
 """Structures that have the alpha of another."""
 PERIODS = (0.06, 0.1, 0.16, 0.25, 0.4, 0.63, 1.0, 1.6, 2.5, 4.0, 6.5)
-"""T1 [s]; beside them stands an entry for a building of which nothing is known."""
+"""T1 [s]; the table has one more entry, for a building of which nothing is known."""
 RATIOS = tuple(one / 100 / GRAVITY for one in (12.0, 30.0, 60.0, 105.0, 190.0, 400.0))
 """PGV/PGA [s]; in cm/s per g 12 to 400."""
 PLACES = (0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.0)
-"""z/h [-]; beside them stands an entry for a floor of which the height is not known."""
+"""z/h [-]; the table has one more entry, for a floor of which the height is not known."""
 COLUMNS = (
     "structure", "T1 [s]", "PGV/PGA [s]", *(f"PFA/PGA at {place}" for place in PLACES), "PFA/PGA unknown",
     *(f"PFV/PGV at {place}" for place in PLACES), "PFV/PGV unknown",

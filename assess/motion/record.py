@@ -119,7 +119,7 @@ class Record:
     * `file`, `format`, `channel`, `location`, `station`, `event`, `start`: as shown to people, each on one line and
       without control characters; "" where the file does not say.
     * `azimuth_deg`: direction of positive acceleration, clockwise from north [deg].
-    * `vertical`: whether the channel is vertical, None where nothing tells; only horizontal motion overturns furniture.
+    * `vertical`: whether the channel is vertical, None where it is unknown; only horizontal motion overturns furniture.
     * `corrected`: whether the provider has already filtered it.
     * `time_step`: [s]
     * `acceleration` (n,): [m/s2]

@@ -210,13 +210,13 @@ class ShakeMap:
             if math.isnan(pga):
                 place = _describe_place(latitude, longitude)
                 raise InputError.about("the PGA of the map is 0 or not a number (NaN) at {place}", place=place)
-        beside = None
+        extra = None
         if self.uncertainty is not None:
             with suppress(InputError):  # it does not reach there
-                beside = self.uncertainty.locate(latitude, longitude)
+                extra = self.uncertainty.locate(latitude, longitude)
         pgv = read("PGV", logarithmic=True) / 100
         psa = ((period, read(name, logarithmic=True) * GRAVITY / 100) for name, period in self.grid.psa.items())
-        sigma, source, shared = self._find_sigma("PGA" if math.isnan(pgv) else "PGV", read, beside)
+        sigma, source, shared = self._find_sigma("PGA" if math.isnan(pgv) else "PGV", read, extra)
         header, event, its_file = self.grid.header, self.grid.event, self.uncertainty_file
         version = join(", ", [text for text in (header.get("shakemap_version"), header.get("code_version")) if text])
         cited = fill("{file}, SHA-256 {sha256}", file=its_file, sha256=self.uncertainty_sha256) if its_file else ""
@@ -242,21 +242,19 @@ class ShakeMap:
             facts=tuple(facts), cautions=tuple(self._list_cautions(read)),
         )  # fmt: skip
 
-    def _find_sigma(
-        self, measure: Measure, read: _Reading, beside: _Reading | None
-    ) -> tuple[float, Text, float | None]:
+    def _find_sigma(self, measure: Measure, read: _Reading, extra: _Reading | None) -> tuple[float, Text, float | None]:
         """Return the standard deviation of ln of a peak [-], where it comes from, and its share common to all places.
 
         That of PGA stands in for that of PGV: both are small near a station, and far from one alike.
         """
         shared = None
-        if beside:
+        if extra:
             for own in ("PGA", measure):
-                between, within = (beside(f"GMPE_{part}_STD{own}") ** 2 for part in ("INTER", "INTRA"))
+                between, within = (extra(f"GMPE_{part}_STD{own}") ** 2 for part in ("INTER", "INTRA"))
                 shared = between / (between + within) if between + within > 0 else shared
         why = fill("the map has none at this place")
         for name in dict.fromkeys((f"STD{measure}", "STDPGA")):
-            for reading, file in ((read, self.file), (beside, self.uncertainty_file)):
+            for reading, file in ((read, self.file), (extra, self.uncertainty_file)):
                 sigma = reading(name) if reading else math.nan
                 if sigma == 0 and reading and not (reading.fields[name] > 0).any():
                     why = fill("the map's {name} is 0 everywhere", name=name)
@@ -315,8 +313,8 @@ def name_uncertainty(name: str) -> tuple[str, ...]:
 def read_shakemap(path: Path) -> ShakeMap:
     """Read the map of a grid.xml, with the uncertainty.xml in its folder; InputError as of `parse_shakemap`."""
     path = path.resolve()
-    beside = next((one for name in name_uncertainty(path.name) if (one := path.with_name(name)).is_file()), None)
-    own = {} if beside is None else {"uncertainty": read_file(beside), "uncertainty_name": beside.name}
+    extra = next((one for name in name_uncertainty(path.name) if (one := path.with_name(name)).is_file()), None)
+    own = {} if extra is None else {"uncertainty": read_file(extra), "uncertainty_name": extra.name}
     return parse_shakemap(read_file(path), path.name, path=path, **own)  # type: ignore[arg-type]
 
 
@@ -336,13 +334,13 @@ def parse_shakemap(
         return found
     try:
         with naming(uncertainty_name if path is None else str(path.with_name(uncertainty_name))):
-            beside = _parse_grid(uncertainty)
-            if beside.event_id != grid.event_id:
+            extra = _parse_grid(uncertainty)
+            if extra.event_id != grid.event_id:
                 raise InputError.about(
                     "it is of the event {other!r}, but the grid of {own!r}: name the right grid",
-                    own=grid.event_id, other=beside.event_id,
+                    own=grid.event_id, other=extra.event_id,
                 )  # fmt: skip
-            beside.check_sigmas(SIGMAS | PARTS)
+            extra.check_sigmas(SIGMAS | PARTS)
     except InputError as error:
         way = fill(
             "You can remove the file: the STDPGV or STDPGA of {grid} is then used, or an assumed one where it has none",
@@ -352,7 +350,7 @@ def parse_shakemap(
     its = hashlib.sha256(uncertainty).hexdigest()
     return replace(
         found, sha256=hashlib.sha256((digest + its).encode()).hexdigest(), uncertainty_file=uncertainty_name,
-        uncertainty_sha256=its, uncertainty=beside.keep(SIGMAS | PARTS),
+        uncertainty_sha256=its, uncertainty=extra.keep(SIGMAS | PARTS),
     )  # fmt: skip
 
 

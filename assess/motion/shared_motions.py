@@ -20,7 +20,7 @@ from assess.motion.kept import Kept, waiting
 from assess.motion.noise import Phases
 from assess.motion.rows import GROUP
 from assess.motion.target import Target
-from assess.motion.target_fit import Fit, Spectra
+from assess.motion.target_fit import Spectra
 from assess.progress import SILENT, Progress
 
 MOST_GROUPS = 25
@@ -57,11 +57,6 @@ class SharedMotions:
     factor: float
     _key: bytes
     _entry: _Entry
-
-    @property
-    def fit(self) -> Fit:
-        """How they meet the target: ratios, which a factor does not change."""
-        return self.generator.fit
 
     @property
     def spectra(self) -> Spectra:

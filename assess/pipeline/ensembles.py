@@ -96,9 +96,9 @@ class GeneratedEnsemble:
         phases = Phases(self.grid, self.seed, self.demand.axis, self.signs)
         shared = share_motions(self.build_target(), phases, factor=self.factor, threads=threads, progress=progress)
         step = self.grid.time_step
-        is_weak = shared.fit.pfv_ratio < WEAK_PFV  # NaN where no PFV is to be met
+        is_weak = shared.generator.fit.pfv_ratio < WEAK_PFV  # NaN where no PFV is to be met
         return OpenMotions(
-            lambda first, count: [(shared.realise(first, count), step)], shared.fit, shared.spectra, is_weak
+            lambda first, count: [(shared.realise(first, count), step)], shared.generator.fit, shared.spectra, is_weak
         )
 
 

@@ -31,7 +31,7 @@ from assess.rocking import block
 MOTION = 0.4
 """Assumed standard deviation of the natural logarithm of the motion's amplitude [-]."""
 TRIED = (0.2, 0.6)
-"""Other standard deviations, under which it is told how many classes would change [-]."""
+"""Other standard deviations, for which a report states how many classes would change [-]."""
 BASE = (0.97, 0.05)
 """Mean and standard deviation of the base over the nominal one [-]: feet stand inside the plan rather than outside."""
 HEIGHT, CENTRE, RESTITUTION = 0.02, 0.05, 0.04

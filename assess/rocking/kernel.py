@@ -138,7 +138,7 @@ def _find_crests(motions: FloatArray, first: int, last: int) -> FloatArray:  # p
 
 @compiled_into
 def _step(s: FloatArray, count: IntArray, samples: FloatArray) -> int:  # pragma: no cover
-    """Take one step in every lane; mark those to be seen to, and count them. Long, since it is the hot loop."""
+    """Take one step in every lane; mark those with a rare event, and count them. Long, since it is the hot loop."""
     for lane in range(LANES):
         at = count[AT + lane]
         s[A0 + lane], s[A1 + lane] = s[SCALE + lane] * samples[at], s[SCALE + lane] * samples[at + 1]
@@ -242,7 +242,7 @@ def _start(
 def _attend(
     s: FloatArray, count: IntArray, lane: int, motions: FloatArray, crests: FloatArray
 ) -> bool:  # pragma: no cover
-    """See to what is rare in a lane's last step; True once its pair is decided."""
+    """Handle the rare event of a lane's last step; True once its pair is decided."""
     if s[VELOCITY + lane] <= 0.0 < s[D1 + lane] and s[START + lane] + s[D1 + lane] > s[PEAK + lane]:  # it turns back
         s[PEAK + lane] = max(s[PEAK + lane], _follow(s, lane, _find_turn(s, lane))[0])
     lifts = s[D1 + lane] > 0.0 or s[D2 + lane] > 0.0

@@ -55,7 +55,7 @@ def test_shared_motions_are_those_made_alone(nothing_kept: list[int]) -> None:
     for first, count in ((0, CALIBRATED + 30), (3, 2), (CALIBRATED - 5, 50), (170, 7)):
         np.testing.assert_array_equal(one.realise(first, count), alone(first, count))
         np.testing.assert_array_equal(other.realise(first, count), alone(first, count) * np.float32(2.5))
-    assert one.fit == other.fit
+    assert one.generator.fit == other.generator.fit
     np.testing.assert_array_equal(other.spectra.ordinates, one.spectra.ordinates * np.float32(2.5))
     np.testing.assert_allclose(other.spectra.target, 2.5 * one.spectra.target)
 

@@ -28,7 +28,7 @@ COMPONENTS = 3
 
 _MORE_UNITS = {"mm/s2": 0.001, "g/10": GRAVITY / 10, "mg": GRAVITY / 1000, "in/s2": 0.0254}
 NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[ED][-+]?\d+)?"
-"""A number of a header, without sign, with the exponent that Fortran prints; whatever the case of its letters."""
+"""A number of a header, without sign, with the exponent that Fortran prints, in letters of either case."""
 END = r"(?=[\s,;]|$)"
 """Where such a number ends, if no unit follows it."""
 
@@ -36,7 +36,7 @@ _EXPONENT = re.compile(r"(?<=[\d.])D(?=[-+\d])", re.IGNORECASE)
 _QUANTITIES = {"velocity": fill("velocities"), "displacement": fill("displacements")}
 
 Direction = tuple[float | None, bool | None]
-"""Azimuth [deg], None where it is unknown, and whether the channel is vertical, None where nothing tells."""
+"""Azimuth [deg], None where it is unknown, and whether the channel is vertical, None where that is unknown."""
 UNKNOWN: Direction = (None, None)
 
 
