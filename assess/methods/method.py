@@ -171,9 +171,7 @@ class MethodInfo:
       names is adopted where nothing was simulated; the simulation integrates the cases that have an ensemble. There is
       one of each.
     * `kind` "probability" or "criterion": a probability has a class; a criterion is met or not met.
-    * `order`: place in reports.
     * `predicts`: one sentence: what a reader learns from it.
-    * `reference`: the publication.
     * `needs`: fields of `Cases` it cannot do without.
     * `selects`: whether pieces of its classes high and very high are simulated with ``verify="high"``.
     * `selecting_flags`: flags that have a piece simulated with ``verify="high"`` whatever its class.
@@ -185,7 +183,6 @@ class MethodInfo:
     * `flags`: every flag it can raise, and what that means.
     * `words`: a criterion's outcome in words: met, not met.
     * `columns`: every name in `Outcome.detail`, in the order of results.
-    * `parameters`: the settings that it reads.
     * `reasons`: why it typically differs from other methods, the most important first.
     * `fitted`: of a model that a study fitted; None of a published method.
     """

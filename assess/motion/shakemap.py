@@ -26,7 +26,6 @@ from typing import Any
 from xml.parsers import expat
 
 import numpy as np
-from numpy.typing import NDArray
 
 from assess.arrays import FloatArray
 from assess.errors import InputError
@@ -389,6 +388,9 @@ def _parse_grid(data: bytes) -> Grid:
         if line is None:
             raise InputError.about("the XML cannot be read. Download it again") from None
         raise InputError.about("line {line}: the XML is damaged or cut off. Download it again", line=line) from None
+    for name in ("event", "grid_specification", "grid_data"):
+        if name not in reader.found:
+            raise InputError.about("the element {name} is missing", name=name)
     return _build(reader)
 
 
@@ -434,9 +436,6 @@ def _shorten(text: str) -> str:
 
 
 def _build(reader: _Reader) -> Grid:
-    for name in ("event", "grid_specification", "grid_data"):
-        if name not in reader.found:
-            raise InputError.about("the element {name} is missing", name=name)
     if len(reader.names) > MOST_FIELDS:
         raise InputError.about("the file has more than {most} fields", most=MOST_FIELDS)
     if sorted(index for index, *_ in reader.names) != sorted(str(at + 1) for at in range(len(reader.names))):
@@ -462,9 +461,27 @@ def _build(reader: _Reader) -> Grid:
             columns=columns, rows=rows, most=MOST_POINTS,
         )  # fmt: skip
     fields = dict(zip(units, _read_numbers(reader.texts, len(units), rows * columns).T, strict=True))
-    latitude, longitude, order = _arrange(fields.pop("LAT"), fields.pop("LON"), rows, columns)
+    latitudes, longitudes = fields.pop("LAT"), fields.pop("LON")
+    is_place = (np.abs(latitudes) <= 90) & (np.abs(longitudes) <= 540)
+    if not is_place.all():
+        row = int((~is_place).argmax())
+        places = {"lat": float(latitudes[row]), "lon": float(longitudes[row])}
+        raise InputError.about(
+            "grid_data, row {row:,}: LON {lon:g} and LAT {lat:g} are not a place on earth", row=row + 1, **places
+        )
+    if np.ptp(longitudes) > 180:  # beyond the date line they go on rising
+        eastern = np.where(longitudes < 0, longitudes + 360, longitudes)
+        longitudes = eastern if np.ptp(eastern) < np.ptp(longitudes) else longitudes
+    order = np.lexsort((longitudes, latitudes))  # of rising latitudes and longitudes
+    north, east = (values[order].reshape(rows, columns) for values in (latitudes, longitudes))
+    is_regular = bool((north == north[:, :1]).all() and (east == east[:1]).all())
+    for values in (north[:, 0], east[0]):
+        step = float(values[-1] - values[0]) / (values.size - 1)
+        is_regular &= step > 0 and bool((np.abs(np.diff(values) - step) <= _ROUND + 0.01 * step).all())
+    if not is_regular:
+        raise InputError.about("LON and LAT are not those of a regular grid of nlon x nlat points")
     return Grid(
-        reader.found["shakemap_grid"], reader.found["event"], latitude, longitude,
+        reader.found["shakemap_grid"], reader.found["event"], north[:, 0].copy(), east[0].copy(),
         {name: values[order].reshape(rows, columns) for name, values in fields.items()}, units,
     )  # fmt: skip
 
@@ -496,30 +513,3 @@ def _read_numbers(texts: Sequence[str], width: int, rows: int) -> FloatArray:
             found=at // width, width=width, rows=rows,
         )  # fmt: skip
     return found.reshape(rows, width)
-
-
-def _arrange(
-    latitudes: FloatArray, longitudes: FloatArray, rows: int, columns: int
-) -> tuple[FloatArray, FloatArray, NDArray[np.intp]]:
-    """Return the rising latitudes and longitudes of the grid [deg], and the order in which its rows follow them."""
-    is_place = (np.abs(latitudes) <= 90) & (np.abs(longitudes) <= 540)
-    if not is_place.all():
-        row = int((~is_place).argmax())
-        places = {"lat": float(latitudes[row]), "lon": float(longitudes[row])}
-        raise InputError.about(
-            "grid_data, row {row:,}: LON {lon:g} and LAT {lat:g} are not a place on earth", row=row + 1, **places
-        )
-    if np.ptp(longitudes) > 180:  # beyond the date line they go on rising
-        eastern = np.where(longitudes < 0, longitudes + 360, longitudes)
-        longitudes = eastern if np.ptp(eastern) < np.ptp(longitudes) else longitudes
-    order = np.lexsort((longitudes, latitudes))
-    north, east = (values[order].reshape(rows, columns) for values in (latitudes, longitudes))
-    is_regular = (north == north[:, :1]).all() and (east == east[:1]).all()
-    if not (is_regular and _is_even(north[:, 0]) and _is_even(east[0])):
-        raise InputError.about("LON and LAT are not those of a regular grid of nlon x nlat points")
-    return north[:, 0].copy(), east[0].copy(), order
-
-
-def _is_even(values: FloatArray) -> bool:
-    step = float(values[-1] - values[0]) / (values.size - 1)
-    return step > 0 and bool((np.abs(np.diff(values) - step) <= _ROUND + 0.01 * step).all())

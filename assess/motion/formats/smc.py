@@ -75,9 +75,7 @@ def _read_channel(lines: Lines) -> Record:
             kind=_REFUSED[kind],
             title=header["title"][:40],
         )
-    integers = _read_integers(lines)
-    comments = _read_comments(lines, integers[COMMENT_LINES])
-    rate = _read_sampling_rate(lines)
+    integers, comments, rate = _read_header(lines)
     numbers, notes = _read_data(lines, integers[DATA_COUNT] or 0, COMMENTS + len(comments))
     if rate is not None:
         own = numbers * CM_S2
@@ -110,47 +108,41 @@ def _read_channel(lines: Lines) -> Record:
     return replace(record, notes=(*record.notes, fill("the header flags a problem with the data: read its comments")))
 
 
-def _read_integers(lines: Lines) -> list[int | None]:
-    numbers = []
+def _read_header(lines: Lines) -> tuple[list[int | None], list[str], float | None]:
+    """Return the whole numbers, the comments, and the sampling rate [Hz], None where the data are pairs."""
+    integers = []
     block = next(lines.part(INTEGERS, REALS).cut(INTEGER, is_whole=True))
     for place, text in enumerate(decode(block)):
         try:
-            numbers.append(int(text))
+            integers.append(int(text))
         except ValueError:
             raise RecordError.about(
                 "line {line}: {text!r} is not a whole number. Get the file again",
                 line=lines.number(INTEGERS + place // INTEGER.per_line),
                 text=text.strip(),
             ) from None
-    return [None if number == numbers[0] else number for number in numbers]
-
-
-def _read_comments(lines: Lines, count: int | None) -> list[str]:
+    known = [None if number == integers[0] else number for number in integers]
     found = next((place for place, line in enumerate(lines.part(COMMENTS)) if not line.startswith("|")), None)
     if found is None:
         raise RecordError.about("there are no data below the header. Get the file again")
-    if found != (count or 0):
+    if found != (known[COMMENT_LINES] or 0):
         raise RecordError.about(
             "the number of comment lines is {there}, but {announced} in the header. Get the file again",
-            announced=count or 0,
+            announced=known[COMMENT_LINES] or 0,
             there=found,
         )
-    return [line[: 2 * LINE] for line in lines.part(COMMENTS, COMMENTS + found)]
-
-
-def _read_sampling_rate(lines: Lines) -> float | None:
-    """Samples per second; None where the data are pairs of time and acceleration."""
+    comments = [line[: 2 * LINE] for line in lines.part(COMMENTS, COMMENTS + found)]
     own = lines.part(REALS, REALS + 1)
     unknown, rate = map(float, convert(own.cut(REAL, is_whole=True), SAMPLING_RATE + 1, own, REAL.per_line))
     if rate == unknown:
-        return None
+        return known, comments, None
     if not (math.isfinite(rate) and rate > 0):
         raise RecordError.about(
             "line {line}: the sampling rate is {rate:g} Hz, expected above 0. Get the file again",
             line=lines.number(REALS),
             rate=rate,
         )
-    return rate
+    return known, comments, rate
 
 
 def _read_data(lines: Lines, announced: int, first: int) -> tuple[FloatArray, tuple[str, ...]]:
