@@ -43,12 +43,6 @@ from assess.methods.simulate import SLIDING, find_branch
 from assess.settings import Settings
 from assess.units import ACCELERATION, LENGTH, ROUNDING, VELOCITY
 
-VELOCITY_FACTOR, VELOCITY_POWER = 10.0, 2.5
-"""10 and 2.5 of λ_V, equation (6)."""
-
-BOUNDARY_FACTOR, BOUNDARY_POWER = 15.6, -1.5
-"""15.6 and -1.5 of F_b, equation (7)."""
-
 NEAR_SWITCH = 1.1
 """F_f within this factor of F_b is flagged: our choice."""
 
@@ -60,7 +54,7 @@ def _eq6_lambda_a(B_H: Any, g: float) -> Any:
 
 # Equation (6), second
 def _eq6_lambda_v(B: Any, H: Any, B_H: Any) -> Any:
-    return np.log(VELOCITY_FACTOR * B / np.sqrt(H) * (1 + B_H) ** VELOCITY_POWER)
+    return np.log(10.0 * B / np.sqrt(H) * (1 + B_H) ** 2.5)
 
 
 # Equation (7), first
@@ -70,7 +64,7 @@ def _eq7_floor_frequency(PFA: Any, PFV: Any) -> Any:
 
 # Equation (7), second
 def _eq7_boundary_frequency(H: Any, B_H: Any) -> Any:
-    return BOUNDARY_FACTOR / np.sqrt(H) * (1 + B_H) ** BOUNDARY_POWER
+    return 15.6 / np.sqrt(H) * (1 + B_H) ** -1.5
 
 
 # Equation (5), either line

@@ -38,10 +38,9 @@ def find_coherence(accelerations: FloatArray, time_step: float) -> FloatArray:
     `accelerations` (k, n) are records of k floors along one axis [m/s2], with a common start; `time_step` is in s.
     Raises ValueError if there is no floor, or a record is not finite or without motion.
     """
-    rows = _check(accelerations)
     from scipy.fft import rfft
 
-    length, weights = _weigh(rows.shape[1], time_step)
+    rows, length, weights = _prepare(accelerations, time_step)
     spectra = rfft(rows, length, axis=1)
     cross = np.stack([((spectra * one) @ spectra.conj().T).real for one in weights], axis=2)
     own = np.sqrt(np.maximum(np.einsum("iib->ib", cross), 1e-300))
@@ -54,11 +53,10 @@ def find_levels(accelerations: FloatArray, time_step: float) -> FloatArray:
     It is two standard deviations of the correlation of unrelated noise (Bendat and Piersol 2010) of the octave's
     bandwidth, over the time in which both floors shake in that octave. Errors as of `find_coherence`.
     """
-    rows = _check(accelerations)
+    rows, length, weights = _prepare(accelerations, time_step)
     every = max(1, round(SPACING / time_step))
     powers = np.stack([husid_envelopes(row, time_step).values[:, ::every] ** 2 for row in rows])
     together = np.einsum("ibt,jbt->ijb", powers, powers) / powers.shape[2]
-    length, weights = _weigh(rows.shape[1], time_step)
     bandwidths = weights.sum(axis=1) ** 2 / np.square(weights).sum(axis=1) / (length * time_step)
     return np.asarray(DEVIATIONS * np.sqrt(together / (2 * bandwidths * rows.shape[1] * time_step)), dtype=np.float64)
 
@@ -92,19 +90,15 @@ def find_signs(accelerations: FloatArray, time_step: float) -> NDArray[np.int64]
     return found
 
 
-def _check(accelerations: FloatArray) -> FloatArray:
+def _prepare(accelerations: FloatArray, time_step: float) -> tuple[FloatArray, int, FloatArray]:
+    """Return the rows checked, the length of transforms, and the weight of each octave at their frequencies, (b, f)."""
+    from scipy.fft import next_fast_len
+
     rows = np.asarray(accelerations, dtype=np.float64)
     if rows.ndim != 2 or not rows.size or not np.isfinite(rows).all() or not rows.any(axis=1).all():
         raise ValueError(f"accelerations have shape {rows.shape}, expected (k, n) finite samples, each row with motion")
-    return rows
-
-
-def _weigh(count: int, time_step: float) -> tuple[int, FloatArray]:
-    """Return the length of transforms, and the weight of each octave at their frequencies [-], (b, f)."""
-    from scipy.fft import next_fast_len
-
-    length = int(next_fast_len(count + math.ceil(PAD / time_step), real=True))
-    return length, split(np.asarray(np.fft.rfftfreq(length, time_step), dtype=np.float64), octaves())
+    length = int(next_fast_len(rows.shape[1] + math.ceil(PAD / time_step), real=True))
+    return rows, length, split(np.asarray(np.fft.rfftfreq(length, time_step), dtype=np.float64), octaves())
 
 
 def turn_phases(frequencies: FloatArray, signs: Sequence[int] | ArrayLike) -> NDArray[np.complex128]:

@@ -72,24 +72,14 @@ class Profile:
         return max(1.0, factor / ductility_reduction) if self.reduced else factor
 
 
-STEEPEST_GROWTH = 2.5
-"""Largest a_1 of ASCE 7-22, and its value while T_a is unknown [-]: PFA over PGA at the roof is 1 more."""
-
-HIGHER_MODES_FROM = 0.4
-"""Period [s] above which a_2 of ASCE 7-22, the share of higher modes, is more than 0."""
-
-HIGHER_MODES_POWER = 10
-"""Power of z/h with which the share of higher modes grows in ASCE 7-22 [-]."""
-
-
 def _asce_7_22(z_h: float, T_a: float | None) -> float:
     if T_a is None:
         # Equation (13.3-5)
-        return 1 + STEEPEST_GROWTH * z_h
-    a_1 = min(1 / T_a, STEEPEST_GROWTH)
-    a_2 = max(1 - (HIGHER_MODES_FROM / T_a) ** 2, 0.0)
+        return 1 + 2.5 * z_h
+    a_1 = min(1 / T_a, 2.5)
+    a_2 = max(1 - (0.4 / T_a) ** 2, 0.0)
     # Equation (13.3-4)
-    return 1 + a_1 * z_h + a_2 * z_h**HIGHER_MODES_POWER
+    return 1 + a_1 * z_h + a_2 * z_h**10
 
 
 def _asce_7_16(z_h: float, _: float | None) -> float:
