@@ -219,7 +219,7 @@ def build_method(model: Fitted, source: str) -> Method:
             data=data if len(data) <= LONGEST else f"{data[: LONGEST - 1]}…",
         ),
         short_title=model.title, kind="probability", order=LAST, predicts=BY_SIZE if is_probit else BY_RATIO,
-        reference=Reference(authors="", year="", title=model.title, source=source, remark=join(" ", (errors, verdict))),
+        reference=Reference(title=model.title, source=source, remark=join(" ", (errors, verdict))),
         needs=frozenset({"breadth", "height", "pfa", *(("pfv",) if is_probit else ())}),
         valid={
             QUANTITIES[key].name: Range(float(f"{one.low:.3g}"), float(f"{one.high:.3g}"), one.unit)

@@ -67,7 +67,6 @@ METHOD = Method(
         authors="Consumer Affairs Agency (Japan)",
         year="2010",
         title="Hondana tō no tentō bōshisaku ni tsuite (On measures against the overturning of bookshelves)",
-        source="",
         remark="Assumed: the limit is as Japanese safety guidance quotes it, not compared with the publication.",
     ),
     needs=frozenset({"breadth", "height"}),

@@ -37,7 +37,7 @@ class Range:
         return (values >= self.low * (1 - ROUNDING)) & (values <= self.high * (1 + ROUNDING))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:
     """The publication: who, when, what and where; `doi` where one is known.
 
@@ -45,10 +45,10 @@ class Reference:
     Reports translate it; the rest stands as the publication has it.
     """
 
-    authors: str
-    year: str
     title: str
-    source: str
+    authors: str = ""
+    year: str = ""
+    source: str = ""
     doi: str = ""
     remark: str = ""
 

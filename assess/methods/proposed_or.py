@@ -185,10 +185,7 @@ METHOD = Method(
     selecting_flags=("extrapolated",),
     predicts=BY_RATIO,
     reference=Reference(
-        authors="",
-        year="",
         title="Overturning Risk of Furniture in Earthquake Affected Areas",
-        source="",
         remark="Section 4, equations (8) and (9), Table 3.",
     ),
     needs=frozenset({"breadth", "height", "pfa"}),

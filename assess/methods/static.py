@@ -62,10 +62,7 @@ METHOD = Method(
     predicts="Whether the floor shakes hard enough for a free-standing piece to start rocking; it need not overturn "
     "then.",
     reference=Reference(
-        authors="",
-        year="",
         title="Overturning Risk of Furniture in Earthquake Affected Areas",
-        source="",
         remark="Section 2.1, the condition for the initiation of motion; known as the formula of Milne or West.",
     ),
     needs=frozenset({"breadth", "height", "pfa"}),

@@ -26,15 +26,12 @@ _IBC = Reference(
     remark="Assumed: widths as given in summaries, not compared with the code.",
 )
 _JAPAN = Reference(
-    authors="",
-    year="",
     title="Building Standards Law Enforcement Order (Japan)",
     source="Article 119",
     remark="Assumed: widths as given in a summary, not compared with the order.",
 )
 _TOKYO = Reference(
     authors="Tokyo Metropolitan Government",
-    year="",
     title="Guidance on preventing the fall of furniture in offices",
     source="bousai.metro.tokyo.lg.jp",
     remark="It asks that the main route be straight, with nothing that falls or moves easily beside it or its exits.",
