@@ -228,10 +228,7 @@ def _cancel(asked: Asked) -> Answer:
 
 
 def _find_report(asked: Asked) -> Answer:
-    """Answer with the report for a frame: its own script and styles count, and it belongs to no address.
-
-    Its one script may run, and no other.
-    """
+    """Answer with the report for a frame: its one script and its styles count, and it belongs to no address."""
     html = asked.job.read_file(REPORT).replace(b"\r\n", b"\n")  # as browsers read it
     scripts = re.findall(rb"<script>(.*?)</script>", html, re.DOTALL)
     hashes = (base64.b64encode(hashlib.sha256(one).digest()).decode() for one in scripts)
@@ -458,11 +455,7 @@ def _check_size(most: int, size: int) -> None:
 
 
 def _parse_body(data: bytes) -> dict[str, Any]:
-    """Return a JSON body, {} for an empty one.
-
-    Raises RequestError if it is no JSON object, or holds what no workbook can: numbers that are not finite, halves of
-    characters.
-    """
+    """Return a JSON object, {} for an empty body; RequestError if it holds NaN, infinity or halves of characters."""
     if not data:
         return {}
     try:

@@ -54,11 +54,7 @@ def evaluate_other(snapshot: "Snapshot", settings: Settings) -> Evaluation:
 
 
 def _evaluate(snapshot: "Snapshot", inventory: Inventory, settings: Settings) -> Evaluation:
-    """Assess the pieces of all floors whose motion is known.
-
-    Raises InputError if a setting does not fit the inventory, as an unknown piece that is to be anchored, or a record
-    is gone.
-    """
+    """Assess the pieces of floors of known motion; InputError if a setting does not fit, or a record is gone."""
     kind = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands, faults = serve_floors(inventory, kind, ductility_reduction=settings.ductility_reduction)
     served = {floor for floor, _axis in demands}

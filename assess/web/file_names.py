@@ -53,10 +53,7 @@ def _is_unseen(sign: str) -> bool:
 
 
 def check_name(name: object) -> str:
-    """Return the name of a new workbook.
-
-    Raises RequestError if it is no name of an .xlsx file alone, such as one with a folder.
-    """
+    """Return the name of a new workbook; RequestError if it is not that of an .xlsx file alone."""
     text = name.strip() if isinstance(name, str) else ""
     if text and not text.lower().endswith(ENDINGS[0]):
         text = f"{text}{ENDINGS[0]}"
@@ -79,10 +76,7 @@ def check_name(name: object) -> str:
 
 
 def list_missing(workbook: Workbook, sheets: Mapping[str, PageSheet], folder: Path) -> list[dict[str, Any]]:
-    """Return the files that a workbook names and that are not in its folder, each with the cells that name it.
-
-    Names that lead out of the folder are left out: no file can be added under them.
-    """
+    """Return the files in the folder that a workbook names and that are not there, with the cells that name them."""
     found: dict[str, dict[str, Any]] = {}
     for name, kind, cell in _list_named(workbook, sheets):
         found.setdefault(name, {"name": name, "kind": kind, "cells": []})["cells"].append(cell)
@@ -91,10 +85,7 @@ def list_missing(workbook: Workbook, sheets: Mapping[str, PageSheet], folder: Pa
 
 
 def list_present(workbook: Workbook, sheets: Mapping[str, PageSheet], folder: Path) -> dict[str, Path]:
-    """Return the files that a workbook names and that are in its folder, by their names.
-
-    With the grid of a ShakeMap the file of its uncertainties is listed, which lies beside it and is named by nobody.
-    """
+    """Return the files that a workbook names and its folder has, by name, and the uncertainties next to a ShakeMap."""
     named = [(name, kind) for name, kind, _ in _list_named(workbook, sheets)]
     beside = [other for name, kind in named if kind == "hazard" for other in list_beside(name)]
     names = dict.fromkeys([*(name for name, _ in named), *beside])
@@ -126,10 +117,7 @@ def _list_named(workbook: Workbook, sheets: Mapping[str, PageSheet]) -> Iterator
 
 
 def add_file(name: str, data: bytes, missing: list[dict[str, Any]], folder: Path) -> None:
-    """Write a file that a workbook names into its folder.
-
-    Raises InputError if the workbook does not name it, or it is there already; OutputError if it cannot be written.
-    """
+    """Write a missing file that a workbook names; InputError if it names none so, OutputError if it fails."""
     shown = repr(name[:100])
     if name not in {one["name"] for one in missing}:
         raise InputError.about("the workbook names no missing file of this name: {name}.", name=shown)

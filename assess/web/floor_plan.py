@@ -47,11 +47,7 @@ HEAD = '<svg xmlns="http://www.w3.org/2000/svg" width="{wide}" height="{tall:.2f
 
 @dataclass(frozen=True, slots=True)
 class FloorPicture:
-    """The picture of a floor, of lines or grey; until it is placed some of the numbers are None.
-
-    `content` is as `assess.model.FloorPlan` has it, `aspect` the height over the width [-]; `left`, `bottom` and
-    `width` tell where it lies [m], and `turn` by how much it is turned [deg].
-    """
+    """The picture of a floor, of lines or grey, and where it lies, if known [m, deg]; `aspect`: height over width."""
 
     content: bytes
     is_lines: bool

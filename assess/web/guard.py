@@ -105,10 +105,7 @@ class Guard:
         return None
 
     def _enter(self, visit: HTTPConnection, session: Session | None) -> Response:
-        """Have a first request come in, with a cookie from then on; one that has it already is led to the page.
-
-        Not by a redirect: where a link of another site led here, a browser would not send a strict cookie along.
-        """
+        """Let a first request in, or lead to the page; not by a redirect, which would lose a strict cookie."""
         is_visit = visit.scope["method"] == "GET" and "sec-purpose" not in visit.headers  # no browser looking ahead
         try:
             admitted = self._keys.admit(visit) if is_visit else None

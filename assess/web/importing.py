@@ -67,10 +67,7 @@ class _Asked(threading.Event):
 
 
 class Import:
-    """One file, of a `name`, that a folder holds as `SOURCE` and that is read; then the folder is removed.
-
-    Raises RequestError if there is no place among the `slots` of all sessions.
-    """
+    """A file, `SOURCE` in a folder that is removed once it has been read; RequestError without a free slot."""
 
     def __init__(self, folder: Path, name: str, routes: Routes, slots: Slots) -> None:
         self.id, self.name, self.state, self.book = secrets.token_hex(8), name, "running", ""
@@ -153,10 +150,7 @@ class Import:
             }  # fmt: skip
 
     def build(self, folder: Path, shaking: str) -> Made:
-        """Return the new workbook, in the language in use, under names that the folder does not have yet.
-
-        Raises RequestError if nothing was read, or its workbook was made already.
-        """
+        """Return the new workbook under free names; RequestError if nothing was read, or it was made already."""
         from assess.bim.import_workbook import build_workbook
 
         with self._lock:
@@ -197,10 +191,7 @@ def _is_there(path: Path) -> bool:
 
 
 def _rename_files(found: "ImportedBuilding", folder: Path) -> "ImportedBuilding":
-    """Return a building whose files have names that the folder does not have, but for the very same files.
-
-    Nor does any file get the name that another file of the building has or would have.
-    """
+    """Return a building whose files have names that neither the folder nor another file has, but for the very same."""
 
     def is_free(path: Path, data: bytes) -> bool:
         return not _is_there(path) or (

@@ -66,10 +66,7 @@ def main() -> None:
 
 
 def assess_workbook(folder: Path, order: dict[str, Any], tell: Tell) -> dict[str, Any]:
-    """Assess the workbook, write its reports and the summary, and return what is to be said of them.
-
-    Raises AssessError as `assess run`.
-    """
+    """Assess the workbook, write reports and summary, and return messages; raises AssessError as `assess run`."""
     from assess.pipeline.run import run
     from assess.report import write_reports
     from assess.report.report_options import ReportOptions

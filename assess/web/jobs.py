@@ -71,11 +71,7 @@ class Slots:
 
 
 class Job:
-    """One simulation of one version of a workbook, which may be changed meanwhile, in a folder of its own in `parent`.
-
-    Raises InputError if an option in the `body` of a request cannot be used, the workbook has errors, or there is no
-    place.
-    """
+    """One simulation of one version of a workbook; InputError for a wrong option or workbook, or no free slot."""
 
     def __init__(self, book: "Book", body: Mapping[str, Any], parent: Path, slots: Slots) -> None:
         self.id, self._slots, self._lock = secrets.token_hex(8), slots, threading.RLock()
@@ -161,10 +157,7 @@ class Job:
             return {"id": self.id, "label": label, "version": version, "state": now["state"], "share": now["share"]}
 
     def describe(self, book: "Book | None") -> dict[str, Any]:
-        """Return all that the page shows; `book` is the workbook as it is now.
-
-        The rows that changed since are found once for each version of the workbook.
-        """
+        """Return all that the page shows; `book` is the workbook now, of which changed rows are found once."""
         with self._lock:
             order, found, stale = self._order, {"items": None, "before_after": None}, list[int]()
             is_old = book is None or book.version != order["version"]
@@ -262,10 +255,7 @@ def prepare(book: "Book", body: Mapping[str, Any], folder: Path) -> tuple[dict[s
 
 
 def list_stale(before: Inventory, now: Inventory) -> list[int]:
-    """Return the rows of furniture whose chance or number may be another one than when they were simulated.
-
-    Among them are rows that are gone, or now have an error.
-    """
+    """Return the rows of furniture that were simulated otherwise, are gone, or now have an error."""
     building, floor, piece = (attrgetter(*names) for names in (BUILDING_INPUTS, FLOOR_INPUTS, ITEM_INPUTS))
     known, left = {one.row: piece(one) for one in before.items}, {one.row for one in now.items}
     is_other = (

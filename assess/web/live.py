@@ -141,10 +141,7 @@ def _describe_state(snapshot: "Snapshot") -> _State:
 
 
 def say_fault(problems: Sequence[Problem], found: Evaluation) -> str:
-    """Return why nothing could be computed, in the language in use; "" where something was.
-
-    `problems` are those of the reading, which count where it found that nothing tells how the floors shake.
-    """
+    """Return why nothing could be computed, by the problems of reading and evaluation; "" where something was."""
     if found.assessment is not None:
         return ""
     why = [*found.problems, *(one for one in problems if isinstance(one, Gap) and one.severity == "error")]
@@ -183,10 +180,7 @@ def _find_word(
     table: Table, row: Row, filled: Mapping[str, float], types: Collection[str], floors: Collection[str],
     unserved: Collection[str],
 ) -> str:  # fmt: skip
-    """Return why a row has no class; "" where it is not filled in as far as its name and sizes.
-
-    `types`, `floors` and those whose motion is not known, `unserved`, are as names are compared.
-    """
+    """Return why a row has no class, "" where name and sizes are not filled in; collections are of compared names."""
     sizes, kind, floor = ("breadth", "height"), row.get("type"), key(row.get("floor") or "")
     if row.get("item") is None:
         return ""

@@ -13,10 +13,7 @@ MOST = 200
 
 
 class RequestError(InputError):
-    """A request is refused: why, with which status (see docs/page.md), how to fix it where the message does not say it.
-
-    `more` are further entries of the answer.
-    """
+    """A request is refused: why, its status (see docs/page.md), how to fix it, and further entries of the answer."""
 
     def __init__(self, message: Text, status: int, fix: Text | str = "", more: dict[str, Any] | None = None) -> None:
         super().__init__(message)

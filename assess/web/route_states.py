@@ -147,11 +147,8 @@ def _find_left_out(tables: Tables, inventory: Inventory) -> dict[str, str]:
 def _list_remarks(tables: Tables, inventory: Inventory, routes: RouteTables, *, is_left_out: bool) -> Iterator[str]:
     lost = len(tables["Items"].rows) - len(inventory.items)
     if lost and (routes.routes or is_left_out):
-        yield ngettext(
-            "{n:,} row of furniture has an error or a blank, and does not count.",
-            "{n:,} rows of furniture have errors or blanks, and do not count.",
-            lost,
-        )
+        yield ngettext("{n:,} row of furniture has an error or a blank, and does not count.",
+                       "{n:,} rows of furniture have errors or blanks, and do not count.", lost)  # fmt: skip
     if routes.routes:
         yield from say.describe_routes(routes)
         yield from say.say_to_fill_in(routes)

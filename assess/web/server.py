@@ -87,10 +87,7 @@ def is_loopback(host: str) -> bool:
 
 
 def bind(place: Place) -> socket.socket:
-    """Return a socket that listens.
-
-    Raises InputError if the port is taken, or the address is not one of this machine.
-    """
+    """Return a socket that listens; InputError if the port is taken, or the address is not one of this machine."""
     family = socket.AF_INET6 if ":" in place.host else socket.AF_INET
     listening = socket.socket(family, socket.SOCK_STREAM)
     try:

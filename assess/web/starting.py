@@ -154,10 +154,7 @@ def _types() -> Mapping[str, str]:
 
 
 def place_workbook(made: Made, folder: Path) -> Path:
-    """Write a new workbook and the files that it names into a folder, never over a file; return its path.
-
-    Raises RequestError if there is a file of its name; OutputError if it cannot be written.
-    """
+    """Write a new workbook and its files, never over a file; RequestError if the name is taken, or OutputError."""
     path = folder / made.name
     if path.exists() or path.is_symlink():
         raise RequestError(

@@ -43,16 +43,11 @@ def duplicates(table: Table, *names: str) -> Iterator[tuple[Row, Row]]:
 
 
 def check_unique(table: Table, *, is_looked_up: bool = False) -> Iterator[Problem]:
-    """Report every name that the first column of a table defines a second time.
-
-    Where spreadsheets look names up, warn of those that they take for patterns: a live column may take another row.
-    """
+    """Report every name that is defined twice, and warn of those that look-ups of spreadsheets take for patterns."""
     name = table.sheet.columns[0].name
     for row, before in duplicates(table, name):
-        message = fill(
-            "duplicate {label} {name}, also in {cell}.",
-            label=table.label(name), name=row.quote(name), cell=table.cell(name, before.number),
-        )  # fmt: skip
+        message = fill("duplicate {label} {name}, also in {cell}.", label=table.label(name), name=row.quote(name),
+                       cell=table.cell(name, before.number))  # fmt: skip
         yield table.problem(name, row, message, fill("Give each its own name."))
     for row in table.with_all(name) if is_looked_up else ():
         if any(sign in row.get(name) for sign in "*?~"):
@@ -108,11 +103,9 @@ def _has_own_sizes(table: Table, name: str, row: Row) -> bool:
 def _report_no_sheet(table: Table, name: str, named: Sequence[Row], sheet: str, *, is_spare: bool) -> Problem:
     values = {"label": fill(table.label(name)) if is_spare else table.label(name)}
     values |= {"name": named[0].quote(name), "sheet": sheet}
-    message = nfill(
-        "{label} {name} is named, but there is no {sheet} sheet.",
-        "{label} {name} and others are named in {n:,} rows, but there is no {sheet} sheet.",
-        len(named), **values,
-    )  # fmt: skip
+    message = nfill("{label} {name} is named, but there is no {sheet} sheet.",
+                    "{label} {name} and others are named in {n:,} rows, but there is no {sheet} sheet.", len(named),
+                    **values)  # fmt: skip
     if is_spare:
         message = nfill(
             "{label} {name} is named, but there is no {sheet} sheet; the sizes typed in its row are used.",
@@ -151,10 +144,8 @@ def check_costs(tables: Tables) -> Iterator[Problem]:
             message = fill("Detail {name} is the same as that in {cell}.", name=row.quote("detail"), cell=cell)
             yield table.problem("detail", row, message, fill("Give each detail one cost."))
         elif detail.key not in (AT_WALL, AT_BASE) and row.get("unit_cost") is not None:
-            message = fill(
-                "Detail {name} is an alternative, which the schedule does not price: its cost is left out.",
-                name=row.quote("detail"),
-            )
+            message = fill("Detail {name} is an alternative, which the schedule does not price: its cost is left out.",
+                           name=row.quote("detail"))  # fmt: skip
             priced = {"wall": DETAILS[AT_WALL].title, "base": DETAILS[AT_BASE].title}
             fix = fill("The schedule prices these: {wall}, {base}.", **priced)
             yield table.problem("detail", row, message, fix, "warning")
@@ -273,10 +264,8 @@ def _check_item(table: Table, row: Row, sizes: dict[str, float]) -> Iterator[Pro
         yield table.habit("axis", row, message, fill("Correct one of the two."), "warning")
     at, height = row.get("bracket_height"), sizes.get("height")
     if at is not None and height is not None and at > height * (1 + ROUNDING):
-        message = fill(
-            "{label} {at:g} cm is greater than {other} {height:g} cm.", label=table.label("bracket_height"),
-            at=at * 100, other=table.label("height"), height=height * 100,
-        )  # fmt: skip
+        message = fill("{label} {at:g} cm is greater than {other} {height:g} cm.", label=table.label("bracket_height"),
+                       at=at * 100, other=table.label("height"), height=height * 100)  # fmt: skip
         yield table.habit("bracket_height", row, message, fill("A bracket holds a piece at its top or below."))
     given = next((name for name in ("bracket_height", "bracket_capacity") if row.get(name) is not None), None)
     if given is not None and row.get("anchored") == "no":
@@ -299,10 +288,8 @@ def _check_item(table: Table, row: Row, sizes: dict[str, float]) -> Iterator[Pro
 def _check_plan_sides(table: Table, row: Row, breadth: float | None, width: float | None) -> Iterator[Problem]:
     if breadth is not None and width is not None and breadth > width * (1 + ROUNDING):
         label = table.label("breadth")
-        message = fill(
-            "{label} {breadth:g} cm is greater than {other} {width:g} cm.",
-            label=label, breadth=breadth * 100, other=table.label("width"), width=width * 100,
-        )  # fmt: skip
+        message = fill("{label} {breadth:g} cm is greater than {other} {width:g} cm.", label=label,
+                       breadth=breadth * 100, other=table.label("width"), width=width * 100)  # fmt: skip
         fix = fill("{label} is the shorter plan side: exchange the two.", label=label)
         yield table.habit("breadth", row, message, fix)
 

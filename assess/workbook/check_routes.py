@@ -29,11 +29,9 @@ def check_names(tables: Tables) -> Iterator[Problem]:
     yield from check_references(tables["Places"], tables)
     yield from check_references(table, tables)
     for row, before in duplicates(table, "route", "segment"):
-        message = fill(
-            "duplicate {label} {segment} of {other} {route}, also in {cell}.",
-            label=table.label("segment"), segment=row.quote("segment"), other=table.label("route"),
-            route=row.quote("route"), cell=table.cell("segment", before.number),
-        )  # fmt: skip
+        message = fill("duplicate {label} {segment} of {other} {route}, also in {cell}.", label=table.label("segment"),
+                       segment=row.quote("segment"), other=table.label("route"), route=row.quote("route"),
+                       cell=table.cell("segment", before.number))  # fmt: skip
         yield table.problem("segment", row, message, fill("Give each its own name."))
 
 
@@ -117,10 +115,8 @@ def _check_clear_width(table: Table, places: Table) -> Iterator[Problem]:
         others = (one for one in wide.get(_ends_of(row), ()) if key(one.get("route")) != key(row.get("route")))
         twin = next(others, None) if table.lacks(row, "clear_width") else None
         if twin is not None:
-            message = fill(
-                "{cell} joins the same places and gives a Clear width; here it is blank.",
-                cell=table.cell("clear_width", twin.number),
-            )
+            message = fill("{cell} joins the same places and gives a Clear width; here it is blank.",
+                           cell=table.cell("clear_width", twin.number))  # fmt: skip
             fix = fill("If both are the same way, fill in the same width.")
             yield table.problem("clear_width", row, message, fix, "warning")
 
@@ -130,10 +126,7 @@ def _ends_of(row: Row) -> frozenset[str]:
 
 
 def check_network(tables: Tables) -> Iterator[Problem]:
-    """Warn of rooms that are on no route, and of routes that lead to no exit.
-
-    Neither where a place is named that is not known: it may be the very one that seems to be left out.
-    """
+    """Warn of rooms on no route, and of routes without an exit, unless a place is named that is not known."""
     table, places = tables["Routes"], tables["Places"]
     wrong = any(table.spoilt(name, row) for row in table.rows for name in ("start", "end"))
     if not table.rows or not places.rows or wrong:
@@ -142,11 +135,9 @@ def check_network(tables: Tables) -> Iterator[Problem]:
     ends = {key(row.get(name) or "") for row in table.rows for name in ("start", "end")}
     rooms = [row for row in known if row.get("kind") == "room" and key(row.get("place")) not in ends]
     if rooms:
-        message = nfill(
-            "the room {rooms} is not on any route: whether it keeps an exit is not evaluated.",
-            "{n} rooms are not on any route, such as {rooms}: whether they keep an exit is not evaluated.",
-            len(rooms), rooms=", ".join(row.quote("place") for row in rooms[:MOST_NAMED]),
-        )  # fmt: skip
+        message = nfill("the room {rooms} is not on any route: whether it keeps an exit is not evaluated.",
+                        "{n} rooms are not on any route, such as {rooms}: whether they keep an exit is not evaluated.",
+                        len(rooms), rooms=", ".join(row.quote("place") for row in rooms[:MOST_NAMED]))  # fmt: skip
         fix = fill("Let a segment begin or end at every room, or leave it out of Places.")
         yield places.problem("place", rooms[0], message, fix, "warning")
     joined = table.with_all("start", "end")
@@ -178,11 +169,9 @@ def check_next_to_routes(tables: Tables) -> Iterator[Problem]:
             used = [own[key(segment)]] if segment else own.values()
             floor, floors = items.sound("floor", row), {routes.sound("floor", one) for one in used}
             if floor is not None and not {None, floor} & floors:
-                message = fill(
-                    "{label} {name} is not on floor {floor} but on {others}.",
-                    label=items.label(name), name=row.quote(name), floor=shorten(floor),
-                    others=", ".join(map(shorten, sorted(floors, key=natural_key))),
-                )  # fmt: skip
+                message = fill("{label} {name} is not on floor {floor} but on {others}.", label=items.label(name),
+                               name=row.quote(name), floor=shorten(floor),
+                               others=", ".join(map(shorten, sorted(floors, key=natural_key))))  # fmt: skip
                 fix = fill("Choose one of the item's floor, or correct the {label}.", label=items.label("floor"))
                 yield items.problem(name, row, message, fix)
         elif all(one.get("segment") for one in routes.with_all("route") if key(one.get("route")) == key(route)):
@@ -262,18 +251,13 @@ def check_segment_rooms(tables: Tables) -> Iterator[Problem]:
         for room in split_names(row.get("room")):
             near = None if key(room) in known else find_near_name(key(room), known)
             if near:
-                message = fill(
-                    "no piece is in room {room}, so none counts beside this segment unless it names it.",
-                    room=shorten(room),
-                )
+                message = fill("no piece is in room {room}, so none counts beside this segment unless it names it.",
+                               room=shorten(room))  # fmt: skip
                 yield table.problem("room", row, message, fill("Did you mean {room}?", room=known[near]), "warning")
 
 
 def check_item_rooms(tables: Tables) -> Iterator[Problem]:
-    """Warn, once a name, of a room of no segment that is nearly one of a segment of the same floor.
-
-    Rooms of Routes that have no pieces are left out: their slip has been reported there.
-    """
+    """Warn of rooms of pieces that are nearly one of a segment of their floor, unless the slip is reported there."""
     items, routes = tables["Items"], tables["Routes"]
     known = defined(tables["Places"])
     stood_in = known.keys() | defined(items, "room").keys()

@@ -47,16 +47,12 @@ def check_drafts(tables: Tables) -> Iterator[Problem]:
         return
     first = next(iter(drafts.values()))
     name = first.get("route")
-    message = nfill(
-        "Route {route} was drafted from a building model.",
-        "{n} routes were drafted from a building model, such as {route}.",
-        len(drafts), route=shorten(name),
-    )  # fmt: skip
-    fix = nfill(
-        "Walk it, correct it, and take '{mark}' off its name.",
-        "Walk them, correct them, and take '{mark}' off their names.",
-        len(drafts), mark=name[name.rindex("(") :].strip(),
-    )  # fmt: skip
+    message = nfill("Route {route} was drafted from a building model.",
+                    "{n} routes were drafted from a building model, such as {route}.", len(drafts),
+                    route=shorten(name))  # fmt: skip
+    fix = nfill("Walk it, correct it, and take '{mark}' off its name.",
+                "Walk them, correct them, and take '{mark}' off their names.", len(drafts),
+                mark=name[name.rindex("(") :].strip())  # fmt: skip
     yield table.problem("route", first, message, fix, "warning")
     given = [row for row in table.with_all("route", "required_width") if is_draft(row.get("route"))]
     if narrow := [row for row in given if row.get("required_width") < DEFAULT_WIDTH]:

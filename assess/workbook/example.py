@@ -85,10 +85,7 @@ def example_texts() -> Iterator[str]:
 
 
 def example_content(units: Units = "si") -> Content:
-    """Return the example's rows in the language in use and in the units of the headers.
-
-    `assess.pipeline.live_values.with_live` adds the results.
-    """
+    """Return the example in the language in use and the units of the headers, without results."""
     sheets = {sheet.name: sheet for sheet in SHEETS}
     return Content({name: [convert_row(sheets[name], row, units) for row in rows] for name, rows in _ROWS.items()})
 
@@ -114,10 +111,7 @@ SHAKING = {"pfa_x": 0.3, "pfa_y": 0.25, "pfv_x": 28, "pfv_y": 24}
 
 
 def room_content(use: str, units: Units = "si", *, is_shaken: bool = False) -> Content:
-    """Return the types of a use, one of `USES`, and its example room, in the language in use.
-
-    Unless `is_shaken`, by which the floor gets a made-up shaking, shaking is all that the workbook lacks.
-    """
+    """Return the types of a use and its example room, complete but for the shaking unless `is_shaken`."""
     building = {"use": use} | ({"scenario": SCENARIO} if is_shaken else {})
     floor = FLOOR | (SHAKING if is_shaken else {})
     items: list[dict[str, Any]] = []

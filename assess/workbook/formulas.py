@@ -41,11 +41,7 @@ def write_plainly(page: Any) -> None:
 
 
 def write_live(method: Method, cells: Mapping[str, str], parameters: Mapping[str, str]) -> dict[str, str]:
-    """Return the formulas of a live method, without ``=``: its "value", and those of its columns that are live.
-
-    `cells` are references by the names of `assess.methods.LiveCells`, `parameters` by the settings that the method
-    reads.
-    """
+    """Return the formulas of a method, without ``=``, by "value" and its columns; `cells` as in `LiveCells`."""
     if method.live is None:
         raise ValueError(f"{method.key} has no live formula")
     operands = {name: Expression(EXCEL, text) for name, text in cells.items()}

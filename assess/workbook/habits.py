@@ -91,11 +91,7 @@ class Remark:
 
 
 def note(habit: str, column: Text | str, text: str, value: object, corrected: float | str) -> Remark:
-    """Return the note on a cell that shows a habit.
-
-    `column` is its header with the unit, `text` what it holds in quotes, `value` what it is read as and `corrected`
-    what belongs into it.
-    """
+    """Return the note on a cell, `text`, of a column, that is read as `value` and should be `corrected`."""
     known, why = _HABITS[habit]
     message = nfill(known.template, known.many, 1, **{**_BLANK, "column": column, "text": text, "value": value})
     return Remark(message, "", "note", habit, corrected, why)

@@ -104,12 +104,7 @@ class KeptFiles:
             yield
 
     def take(self, key: Key | None, allowance: Allowance, make: Callable[[], Any]) -> Any:
-        """Return what `make` makes of a file, or made of it before; its errors are results, not raised.
-
-        `key` is what `find_key` returned, with what the result depends on besides; None for a file that is not kept.
-
-        Raises CellError if a workbook may not name so much.
-        """
+        """Return what `make` makes of a file, known by `find_key`, or made before; CellError if that is too much."""
         if key is None:
             return make()
         self._asked.add(key)

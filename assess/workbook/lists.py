@@ -35,10 +35,7 @@ FROZEN = {ITEMS.name: 2}
 
 
 def list_columns(sheet: Sheet) -> list[str]:
-    """Return the columns of a sheet from the left: the field of each to fill in, the label of each that is computed.
-
-    In Items the class stands next to the item, so that it stays in view while the row is filled in.
-    """
+    """Return the columns of a sheet from the left, fields or labels of computed ones; the class is next to the item."""
     first, *others = (column.name for column in sheet.columns)
     if sheet is ITEMS:
         others = [CLASS, *others, *(label for label in LIVE if label != CLASS), *WORKINGS]
@@ -327,10 +324,7 @@ def _find_part(value: str, nodes: str, at: str) -> str:
 
 
 def _list_nodes() -> Iterator[tuple[str, list[str]]]:
-    """Yield by axis the formulas for PFA/PGA, and for PFV/PGV, at each z/h of the table and at an unknown one.
-
-    Each begins with that at grade, which is 1.
-    """
+    """Yield by axis formulas for PFA/PGA, and PFV/PGV, at grade, at each z/h of the table, and at an unknown one."""
     for axis, (quantity, peak) in product("xy", enumerate("av")):
         row = f"structure_row+period_at*{len(medians.RATIOS)}+ratio_{axis}_at+1"
         formulas = ["=1"]
@@ -420,10 +414,7 @@ def _read(peak: str, axis: str, cells: Mapping[str, str]) -> str:
 
 
 def _could_serve(z: str) -> str:
-    """Return an expression for whether the ground or other floors could serve a floor that has no motion of its own.
-
-    What is filled in counts, be it usable or not: what is wrong with it is the program's to say.
-    """
+    """Return an expression for whether the ground or other floors could serve a floor, by all that is filled in."""
     placed = f'{_OWNING}*(floor_z<>"")'
     # A floor at grade is the ground of those below it, too.
     limits = f"<=MAX(0,{z})", f">={z}"

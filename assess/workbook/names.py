@@ -67,10 +67,7 @@ def find_near(word: str, words: Collection[str]) -> str | None:
 
 
 def find_near_name(name: str, names: Collection[str]) -> str | None:
-    """Return the one of `names`, of one word or several, that a name is most likely a slip of; None if none is near.
-
-    Each word has to be near, not only the whole: Mystery cabinet is no slip of Tray cabinet.
-    """
+    """Return the name that a name is likely a slip of, word by word: Mystery cabinet is none of Tray cabinet."""
     for other in difflib.get_close_matches(name, names, MOST_NEAR, NEAR):
         if re.findall(r"\d+", name) != re.findall(r"\d+", other):
             continue  # Room 12 is no slip of Room 11
@@ -174,10 +171,7 @@ def _live_labels(code: str) -> dict[str, str]:
 
 @lru_cache(maxsize=4096)  # the same choices stand in row after row
 def find_choice(text: str, choices: tuple[str, ...]) -> str | None:
-    """Return the choice, in English, that a text means in any language; None if none.
-
-    Of a choice with a comma what stands before it is enough: ``MMI VII``.
-    """
+    """Return the choice, in English, that a text means in any language, or its part before a comma; None if none."""
     if (choice := match_choice(text, choices)) is not None:
         return choice
     for code in _OTHERS:

@@ -78,10 +78,7 @@ Source: TypeAlias = "SheetCells | Worksheet | CodeCells"
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row of a table: its number, its values by field name (SI), and the texts of the unknown columns.
-
-    `values` leaves out what is blank or could not be read.
-    """
+    """One row of a table: its number, its usable values by field (SI), and the texts of the unknown columns."""
 
     number: int
     values: Mapping[str, Any]
@@ -310,11 +307,8 @@ class _Parser:
                 and all(cells.get(at) == headers[at] for at in needed)
                 and sum(headers.get(at) == value for at, value in cells.items()) > 1
             ):
-                message = nfill(
-                    "the row repeats the headers; it is skipped.",
-                    "{n:,} rows repeat the headers; they are skipped ({cells}).",
-                    1, cells="",
-                )  # fmt: skip
+                message = nfill("the row repeats the headers; it is skipped.",
+                                "{n:,} rows repeat the headers; they are skipped ({cells}).", 1, cells="")  # fmt: skip
                 self.report(self.source.address(number, needed[0]), message, "", "note", "headers")
             elif kept is None:
                 found[number] = self._row(number, cells)
@@ -372,10 +366,8 @@ class _Parser:
                 "hidden row {rows} is read as well.", "{n:,} hidden rows are read as well: {rows}.", len(rows), **named
             )
             if self.own.columns[0].name == "item":
-                message = nfill(
-                    "hidden row {rows} is assessed as well.", "{n:,} hidden rows are assessed as well: {rows}.",
-                    len(rows), **named,
-                )  # fmt: skip
+                message = nfill("hidden row {rows} is assessed as well.",
+                                "{n:,} hidden rows are assessed as well: {rows}.", len(rows), **named)  # fmt: skip
             self.report(self.source.address(rows[0]), message, severity="note")
         columns = [at for at in sorted(self.columns) if at in self.source.hidden_columns]
         names = {at: self.columns[at].name for at in columns}
@@ -486,10 +478,7 @@ def _shown(value: Any) -> Any:
 
 
 def find_lone_text(cells: Cells, known: Collection[int], first: Collection[int]) -> int | None:
-    """Return the column of the only filled cell of a row, if it is one of the `first` and holds words; else None.
-
-    Cells of columns that are not `known` do not count.
-    """
+    """Return the column of the only filled cell of the `known`, if one of the `first` and words; else None."""
     filled = None
     for at, value in cells.items():
         if at in known and not is_blank(value):

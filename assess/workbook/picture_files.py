@@ -117,10 +117,8 @@ class PictureReader:
                 continue
             needed = PLACED if drawing.width is None else PLACED[:-1]
             blank = [fill(table.label(name)) for name in needed if row.get(name) is None]
-            message = nfill(
-                "the plan is not drawn: {labels} is blank.", "the plan is not drawn: {labels} are blank.",
-                len(blank), labels=join(", ", blank),
-            )  # fmt: skip
+            message = nfill("the plan is not drawn: {labels} is blank.", "the plan is not drawn: {labels} are blank.",
+                            len(blank), labels=join(", ", blank))  # fmt: skip
             fix = fill("Fill in X and Y of its lower left corner, and its width in the building.")
             yield table.problem("plan", row, message, fix, "warning")
 
@@ -189,20 +187,16 @@ def _check_place(table: Table, row: Row, plan: FloorPlan, items: Table, places: 
     outside = [one for one in own if not plan.holds((one.get("x"), one.get("y")))]
     if outside:
         names = [shorten(one.get("item") or "?") for one in outside[:MOST_NAMED]]
-        message = nfill(
-            "{n:,} piece of {all:,} lies outside the plan: {names}.",
-            "{n:,} pieces of {all:,} lie outside the plan: {names}.",
-            len(outside), all=len(own), names=", ".join(names) + (", ..." if len(outside) > MOST_NAMED else ""),
-        )  # fmt: skip
+        message = nfill("{n:,} piece of {all:,} lies outside the plan: {names}.",
+                        "{n:,} pieces of {all:,} lie outside the plan: {names}.", len(outside), all=len(own),
+                        names=", ".join(names) + (", ..." if len(outside) > MOST_NAMED else ""))  # fmt: skip
         fix = fill("Check Plan left X, Plan bottom Y, Plan width and Plan turn, and the positions of these pieces.")
         yield table.problem("plan", row, message, fix, "warning")
         return
     placed = [*own, *(one for one in places.with_all("floor", "x", "y") if one.get("floor") == row.get("floor"))]
     spread = max(max(one.get(side) for one in placed) - min(one.get(side) for one in placed) for side in ("x", "y"))
     if spread >= LEAST_SPREAD and min(plan.width, plan.height) > FAR_LARGER * spread:
-        message = fill(
-            "the plan is {width:.4g} x {height:.4g} m, while the pieces on it lie within {spread:.3g} m.",
-            width=plan.width, height=plan.height, spread=spread,
-        )  # fmt: skip
+        message = fill("the plan is {width:.4g} x {height:.4g} m, while the pieces on it lie within {spread:.3g} m.",
+                       width=plan.width, height=plan.height, spread=spread)  # fmt: skip
         fix = fill("Check Plan width: it is that of the whole plan in the building, in the unit of its heading.")
         yield table.problem("plan_width", row, message, fix, "warning")

@@ -62,11 +62,9 @@ def fill_building(
     if not values:
         return tables, problems
     labels = join(", ", [own.label(name) for name in values])
-    note = nfill(
-        "{labels} is blank in the workbook: the value comes from the index.",
-        "{labels} are blank in the workbook: the values come from the index.",
-        len(values), labels=labels,
-    )  # fmt: skip
+    note = nfill("{labels} is blank in the workbook: the value comes from the index.",
+                 "{labels} are blank in the workbook: the values come from the index.", len(values),
+                 labels=labels)  # fmt: skip
     problems.append(Problem("note", own.sheet.name, "", note))
     base = own if own.rows else replace(new, places={}, rows=(row,))
     filled = replace(base, rows=(replace(row, values={**row.values, **values}),))
@@ -81,11 +79,9 @@ def replace_ground(tables: Tables, ground: GroundField) -> tuple[Tables, list[Pr
     cleared = replace(row, values={name: value for name, value in row.values.items() if name not in REPLACED})
     notes = []
     if filled:
-        message = nfill(
-            "{labels} is not used: the ground motion of {file} takes its place.",
-            "{labels} are not used: the ground motion of {file} takes their place.",
-            len(filled), labels=join(", ", [table.label(name) for name in filled]), file=ground.file,
-        )  # fmt: skip
+        message = nfill("{labels} is not used: the ground motion of {file} takes its place.",
+                        "{labels} are not used: the ground motion of {file} takes their place.", len(filled),
+                        labels=join(", ", [table.label(name) for name in filled]), file=ground.file)  # fmt: skip
         notes = [table.problem(filled[0], row, message, severity="note")]
     return {**tables, BUILDING.name: replace(table, rows=(cleared,))}, notes
 
@@ -192,11 +188,9 @@ class FileReader:
                 message = fill("no ground motion at the building: {why}.", why=error.message)
                 yield table.problem(name or "latitude", row, message, fix)
         elif not name or len(lacking) == 2:  # of one alone the other was reported
-            message = nfill(
-                "{labels} is blank; the ground motion of {file} needs the building's place.",
-                "{labels} are blank; the ground motion of {file} needs the building's place.",
-                len(lacking), labels=join(", ", [table.label(one) for one in lacking]), file=file,
-            )  # fmt: skip
+            message = nfill("{labels} is blank; the ground motion of {file} needs the building's place.",
+                            "{labels} are blank; the ground motion of {file} needs the building's place.", len(lacking),
+                            labels=join(", ", [table.label(one) for one in lacking]), file=file)  # fmt: skip
             cells = [cell for one in lacking if re.fullmatch(r"[A-Z]+\d+", cell := table.cell(one, row.number))]
             fix = fill("Fill in Latitude and Longitude.")
             if cells:
@@ -305,18 +299,13 @@ def _check_direction(
     azimuth = one.record.azimuth_deg
     off = 0.0 if along is None or azimuth is None else angle_between(azimuth, along)
     if off > NEAR_AXIS:
-        message = fill(
-            "{record} points to {azimuth:g} deg, {off:.0f} deg off the {axis} axis.",
-            record=shorten(one.name), azimuth=azimuth, off=off, axis=axis,
-        )  # fmt: skip
+        message = fill("{record} points to {azimuth:g} deg, {off:.0f} deg off the {axis} axis.",
+                       record=shorten(one.name), azimuth=azimuth, off=off, axis=axis)  # fmt: skip
         yield table.problem(name, row, message, fill("Check the axis, or Azimuth of X in Building."), "warning")
 
 
 def find_file(text: str, folder: Path) -> Path:
-    """Return the file that `text` names inside `folder`.
-
-    Raises CellError if the name leads outside the folder, or no such file is there.
-    """
+    """Return the file that `text` names inside `folder`; CellError if it leads outside, or no such file is there."""
     path = find_place(text, folder)
     if not path.is_file():
         message = fill("the file {name} was not found next to the workbook.", name=shorten(text))
@@ -325,10 +314,7 @@ def find_file(text: str, folder: Path) -> Path:
 
 
 def find_place(text: str, folder: Path) -> Path:
-    """Return where the file that `text` names inside `folder` belongs, be it there or not.
-
-    Raises CellError if the name leads outside the folder, or can be that of no file.
-    """
+    """Return where a file that `text` names in `folder` belongs; CellError if it leads outside or cannot be."""
     name = shorten(text)
     windows, posix = PureWindowsPath(text), PurePosixPath(text)
     is_odd = any(unicodedata.category(character) in ("Cc", "Cf", "Cs") for character in text) or len(text) > 500

@@ -217,10 +217,7 @@ def _without_faulty(table: Table) -> Table:
 
 
 def correct_names(tables: Tables) -> tuple[Tables, list[Problem]]:
-    """Return the tables with corrections of names of other sheets, and the notes on them.
-
-    Letter case alone is no difference: a spreadsheet's look-ups ignore it, too.
-    """
+    """Return the tables with corrections of names of other sheets, and notes; letter case alone is no difference."""
     found: dict[str, Table] = {}
     notes: list[Problem] = []
     for sheet, table in tables.items():

@@ -85,17 +85,13 @@ def _read_cell(column: Column, unit: str, value: object) -> tuple[object, tuple[
     found = READERS[column.kind](column, meant, unit)
     if column.kind == "number" and isinstance(meant, int | float) and is_unusual(column, float(meant), unit):
         usual = span(column.usual_low, column.usual_high, column, unit)
-        message = fill(
-            "{column} is {number:g} {unit}, usual is {usual}.",
-            column=fill(column.label), number=meant, unit=unit, usual=usual,
-        )  # fmt: skip
+        message = fill("{column} is {number:g} {unit}, usual is {usual}.", column=fill(column.label), number=meant,
+                       unit=unit, usual=usual)  # fmt: skip
         remarks.append(Remark(message, fill("Check the number and the unit.")))
     elif isinstance(value, str) and column.kind in ("text", "file", "records") and (removed := clean(value)[1]):
-        message = nfill(
-            "{n} control or direction character in {column} was taken out.",
-            "{n:,} control or direction characters in {column} were taken out.",
-            removed, column=fill(column.label),
-        )  # fmt: skip
+        message = nfill("{n} control or direction character in {column} was taken out.",
+                        "{n:,} control or direction characters in {column} were taken out.", removed,
+                        column=fill(column.label))  # fmt: skip
         remarks.append(Remark(message))
     return found, tuple(remarks)
 
@@ -426,10 +422,8 @@ def _take_number(column: Column, value: object, unit: str) -> tuple[object, Rema
         readings = [float(f"{one * factor:.12g}") for one in readings]
     if len(readings) == 2:
         one, other = (fill("{number:.10g}{unit}", number=number, unit=suffix) for number in readings)
-        message = fill(
-            "{label} is the text {text}, which can be read as {one} or as {other}.",
-            label=column.label, text=shorten(value), one=one, other=other,
-        )  # fmt: skip
+        message = fill("{label} is the text {text}, which can be read as {one} or as {other}.", label=column.label,
+                       text=shorten(value), one=one, other=other)  # fmt: skip
         raise CellError(message, fill("Type the number without a separator between thousands."))
     if not readings or not math.isfinite(readings[0]):
         return value, None
@@ -471,10 +465,7 @@ def _read_feet(column: Column, value: str, unit: str) -> float | None:
 
 
 def read_digits(digits: str) -> list[float]:
-    """Return the ways to read digits with separators: none, one or two.
-
-    A single separator before exactly three digits can be a decimal sign or part thousands, except after 0.
-    """
+    """Return the ways to read digits with separators: two for one before exactly three digits, except after 0."""
     found = [float(digits.replace(",", "."))] if _PLAIN.fullmatch(digits) else []
     match = _GROUPED.fullmatch(digits)
     if match and match["point"] != match["mark"]:
@@ -550,10 +541,8 @@ def _take_date(column: Column, value: object, unit: str) -> tuple[object, Remark
     text = straighten(value[:LONGEST])
     date, month = _read_date(column.label, text, shorten(value)), _MONTH.fullmatch(text)
     if date is None and (month is None or (month[1] and not _find_month(month[1]))):
-        message = fill(
-            "{label} is {text}, which is not read as a date; it is shown as typed.",
-            label=_name_column(column), text=shorten(value),
-        )  # fmt: skip
+        message = fill("{label} is {text}, which is not read as a date; it is shown as typed.",
+                       label=_name_column(column), text=shorten(value))  # fmt: skip
         return value, Remark(message, AS_ISO)
     if date is None or date == value:
         return value, None
@@ -630,10 +619,8 @@ def _read_date(label: str, text: str, shown: str) -> str | None:
         )
     if len(days) > 1:
         one, other = (day.isoformat() for day in days)
-        message = fill(
-            "{label} is {text}, which can be read as {one} or as {other}.",
-            label=label, text=shown, one=one, other=other,
-        )  # fmt: skip
+        message = fill("{label} is {text}, which can be read as {one} or as {other}.", label=label, text=shown, one=one,
+                       other=other)  # fmt: skip
         raise CellError(message, fill("Write {one} or {other}.", one=one, other=other))
     return days[0].isoformat()
 
