@@ -11,7 +11,7 @@ from assess.errors import Problem
 from assess.i18n import Text, fill, nfill
 from assess.units import QUANTITIES
 from assess.workbook.habits import CellError, shorten
-from assess.workbook.names import is_live, key, say_choices, split_header
+from assess.workbook.names import is_live, key, split_header, translate_choices
 from assess.workbook.open import LOCKED, MAX_ROWS, UNSAVED, Percent, Place
 from assess.workbook.parse import Row, Table
 from assess.workbook.patch import Value
@@ -132,7 +132,7 @@ class SheetUpdate:
         if not isinstance(wanted, str):
             return _convert(column, unit, wanted)
         if wanted in column.choices:
-            return say_choices(column.choices, column.language)[column.choices.index(wanted)]
+            return translate_choices(column.choices, column.language)[column.choices.index(wanted)]
         return wanted
 
     def replace(self, row: Row, name: str, wanted: Any) -> None:

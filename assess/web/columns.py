@@ -9,7 +9,7 @@ from typing import Any
 from assess.i18n import load_catalogue, speaking
 from assess.units import QUANTITIES
 from assess.workbook.lists import FROZEN, PLACES
-from assess.workbook.names import find_live, is_live, say_choices, split_header, translate
+from assess.workbook.names import find_live, is_live, split_header, translate, translate_choices
 from assess.workbook.open import MAX_ROWS, UNSAVED, Percent
 from assess.workbook.parse import Table, Tables
 from assess.workbook.plain_rows import column_letters
@@ -70,7 +70,7 @@ class PageColumn:
             with speaking(catalogue):
                 found["help"] = describe(one)
             found |= {
-                "choices": list(say_choices(one.choices, language) if is_named else one.choices),
+                "choices": list(translate_choices(one.choices, language) if is_named else one.choices),
                 "offered": list(map(catalogue.find, one.offered)), "source": one.source, "required": one.required,
                 "width": one.width,
             }  # fmt: skip

@@ -22,7 +22,7 @@ from assess.routes.walls import find_walls
 from assess.web.evaluation import list_floors
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table, Tables
-from assess.workbook.resolve import SIZES, build_catalogue, filled_sizes, places_by_name
+from assess.workbook.resolve import SIZES, filled_sizes, places_by_name, types_by_name
 from assess.workbook.schema import DEFAULT_WIDTH
 
 if TYPE_CHECKING:
@@ -185,7 +185,7 @@ def _draw(tables: Tables, inventory: Inventory, floor: str, picture: FloorPictur
         return [row for row in tables[name].rows if floor and key(row.get("floor") or "") == key(floor)]
 
     items, places = list_own("Items"), list_own("Places")
-    types = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}
+    types = types_by_name(tables["Catalogue"])
     leaning = tuple(one for one in inventory.items if one.floor == floor and one.against_wall)
     walls = find_walls(replace(inventory, items=leaning))
     away = {leaning[at].row: one.falls_toward for at, one in walls.items()}

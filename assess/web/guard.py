@@ -137,12 +137,12 @@ def _refuse(visit: HTTPConnection, status: int, message: Text | str, fix: Text |
     """Answer with a short page to a browser that wanted one, else as every request of the page is answered."""
     code = choose_language(visit.cookies.get(COOKIE, ""), "", visit.headers.get("accept-language", ""))
     with speaking(load_catalogue(code)):
-        said, fixed = gettext(message), gettext(fix)
+        shown, fixed = gettext(message), gettext(fix)
     if any("text/html" in one for one in visit.headers.getlist("accept")):
         # a link of another site brings no strict cookie along: the browser asks once more from here
         is_linked = visit.headers.get("sec-fetch-site") in ("cross-site", "same-site")
         again = _TO_PAGE if status == NO_SESSION and visit.scope["path"] == "/" and is_linked else ""
-        text = f"{again}<p>{escape(said)}</p><p>{escape(fixed)}</p>"
+        text = f"{again}<p>{escape(shown)}</p><p>{escape(fixed)}</p>"
         page = f'<!DOCTYPE html><html lang="{code}"><meta charset="utf-8"><title>assess</title>{text}</html>'
         return Response(page, status, media_type="text/html")
-    return Response(json.dumps({"message": said, "fix": fixed, "problems": []}), status, media_type="application/json")
+    return Response(json.dumps({"message": shown, "fix": fixed, "problems": []}), status, media_type="application/json")

@@ -51,8 +51,8 @@ def _describe_taken(taken: Mapping[str, Any]) -> dict[str, Any]:
             "reason": gettext(reason), "is_furniture": is_furniture, "count": total, "types": shown,
             "more": len(rows) - len(shown),
         })  # fmt: skip
-    said = {name: [gettext(text) for text in taken[name]] for name in ("warnings", "remarks")}
-    return {**taken, "of": taken["pieces"] + maybe, "skipped": groups, **said}
+    texts = {name: [gettext(text) for text in taken[name]] for name in ("warnings", "remarks")}
+    return {**taken, "of": taken["pieces"] + maybe, "skipped": groups, **texts}
 
 
 class _Asked(threading.Event):

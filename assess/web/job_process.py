@@ -26,11 +26,11 @@ from assess.web.request_errors import describe_problem
 ORDER, INPUT, OUT, SUMMARY = "job.json", "input", "out", "summary.json"
 PLAIN = frozenset(("json", "csv", "xlsx"))
 """Formats that need no series of figures."""
-TOLD_EVERY = 0.1
+SENT_EVERY = 0.1
 """Shortest time between two reports of one stage [s]."""
 LOWER_PRIORITY = 5
 """How far this process stands back for the server, which answers while it works."""
-Tell = Callable[[dict[str, Any]], None]
+Send = Callable[[dict[str, Any]], None]
 
 
 def main() -> None:
@@ -40,7 +40,7 @@ def main() -> None:
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # whatever else is printed goes to the standard error
     lock = threading.Lock()
 
-    def tell(message: dict[str, Any]) -> None:
+    def send(message: dict[str, Any]) -> None:
         with lock:
             stream.write(json.dumps(message) + "\n")
             stream.flush()
@@ -56,16 +56,16 @@ def main() -> None:
     order = json.loads((folder / ORDER).read_text(encoding="utf-8"))
     with speaking(load_catalogue(order["language"])):
         try:
-            tell({"state": "done", **assess_workbook(folder, order, tell)})
+            send({"state": "done", **assess_workbook(folder, order, send)})
         except AssessError as error:
             problems = list(map(describe_problem, error.problems if isinstance(error, WorkbookError) else ()))
-            tell({"state": "failed", "message": gettext(error.message), "problems": problems})
+            send({"state": "failed", "message": gettext(error.message), "problems": problems})
         except OSError as error:
-            tell({"state": "failed", "message": error.strerror or type(error).__name__, "problems": []})
+            send({"state": "failed", "message": error.strerror or type(error).__name__, "problems": []})
     os._exit(0)  # without waiting for anything that is still computed aside
 
 
-def assess_workbook(folder: Path, order: dict[str, Any], tell: Tell) -> dict[str, Any]:
+def assess_workbook(folder: Path, order: dict[str, Any], send: Send) -> dict[str, Any]:
     """Assess the workbook, write reports and summary, and return messages; raises AssessError as `assess run`."""
     from assess.pipeline.run import run
     from assess.report import write_reports
@@ -77,9 +77,9 @@ def assess_workbook(folder: Path, order: dict[str, Any], tell: Tell) -> dict[str
     def listen(report: Report) -> None:
         nonlocal latest, stage
         now, of = time.monotonic(), (report.stage, report.detail)
-        if of != stage or now - latest >= TOLD_EVERY:
+        if of != stage or now - latest >= SENT_EVERY:
             latest, stage = now, of
-            tell({name: getattr(report, name) for name in ("stage", "share", "detail", "seconds_left")})
+            send({name: getattr(report, name) for name in ("stage", "share", "detail", "seconds_left")})
 
     progress, formats = Progress(listen), order["formats"]
     settings = Settings(**order["settings"])

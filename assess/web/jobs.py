@@ -113,20 +113,20 @@ class Job:
         last: dict[str, Any] = {"state": "failed", "message": gettext(lost)}
         with self._process as process:
             for line in process.stdout or ():
-                said = json.loads(line)
-                if "state" in said:
-                    last = said
+                message = json.loads(line)
+                if "state" in message:
+                    last = message
                 elif self.is_running:
-                    self._now.update(said)
+                    self._now.update(message)
         self._slots.leave()
         with self._lock:
             if self.is_running:
                 self._now.update(last)
             if self._now["state"] == "failed" and not self._now["problems"]:
                 with suppress(OSError):  # what it wrote is shown in the window of the server
-                    said = (self._folder / ERRORS).read_text(encoding="utf-8", errors="replace")[-MOST_SHOWN:]
-                    if said:
-                        LOG.error("a simulation ended with:\n%s", said)
+                    text = (self._folder / ERRORS).read_text(encoding="utf-8", errors="replace")[-MOST_SHOWN:]
+                    if text:
+                        LOG.error("a simulation ended with:\n%s", text)
             for name in (TEMPORARY, INPUT) if self._now["state"] == "done" else ("",):
                 shutil.rmtree(self._folder / name, ignore_errors=True)
 
@@ -217,7 +217,7 @@ FLOOR_INPUTS = ("floor", "elevation", "pfa", "pfv", "records")
 def prepare(book: "Book", body: Mapping[str, Any], folder: Path) -> tuple[dict[str, Any], Inventory]:
     """Write the order of a job and a copy of the workbook with the files that it names.
 
-    Returns what the process is told, with the version of the workbook, and what that holds. Raises InputError if an
+    Returns the order of the process, with the version of the workbook, and what that holds. Raises InputError if an
     option cannot be used, a format needs a package that is not installed, or the workbook has errors: as `assess run`,
     which works with whole workbooks only.
     """

@@ -29,7 +29,7 @@ from assess.workbook.live_row import IS_ANCHORED, NO_AXIS, NO_FLOOR, NO_TYPE
 from assess.workbook.names import find_sheet, key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.plain_rows import column_number
-from assess.workbook.resolve import build_catalogue, defined, filled_sizes
+from assess.workbook.resolve import defined, filled_sizes, types_by_name
 from assess.workbook.schema import CLASS, CLASS_OR, LIVE, NO, SHEETS, WORKINGS, YES
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ def _describe_state(snapshot: "Snapshot") -> _State:
         columns = {at: every[at].live for at in sorted(every) if every[at].live in (*SHOWN_WORKINGS, *LIVE)}
         try:
             found = evaluate_once(snapshot, BY_FORMULAS)
-            fault = say_fault(snapshot.problems, found)
+            fault = describe_failure(snapshot.problems, found)
         except AssessError as error:
             found = Evaluation(None, frozenset(key(one.floor) for one in inventory.floors), ())
             fault = gettext(error.message)
@@ -140,7 +140,7 @@ def _describe_state(snapshot: "Snapshot") -> _State:
         return _State(snapshot.version, rows, tuple(columns), rest)
 
 
-def say_fault(problems: Sequence[Problem], found: Evaluation) -> str:
+def describe_failure(problems: Sequence[Problem], found: Evaluation) -> str:
     """Return why nothing could be computed, by the problems of reading and evaluation; "" where something was."""
     if found.assessment is not None:
         return ""
@@ -158,7 +158,7 @@ def list_rows(
     """
     labels, table, rows = tuple(columns), tables["Items"], dict[int, LiveRow]()
     known = {} if evaluation.assessment is None else _list_assessed(evaluation.assessment, labels)
-    types, floors = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}, defined(tables["Floors"])
+    types, floors = types_by_name(tables["Catalogue"]), defined(tables["Floors"])
     anchored = {one.row: one.anchored for one in inventory.items}  # counts in place of the cell
     for row in table.rows:
         if row.number in known:

@@ -63,7 +63,7 @@ class Snapshot:
 
         `text` is the file as the floor names it, `width` the width of the whole plan [m], where it is filled in.
         """
-        with self._kept.more():
+        with self._kept.lock:
             return PictureReader(self.files, SILENT, self._kept).find_drawing(text, width)
 
     def _reading(self) -> tuple[Tables, Inventory]:

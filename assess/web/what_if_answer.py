@@ -15,7 +15,7 @@ from assess.pipeline.run import evaluate_route_tables, list_first_fixes
 from assess.progress import SILENT
 from assess.settings import SCENARIOS, Settings, show_given
 from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, evaluate_other
-from assess.web.live import count_classes, describe_rows, list_rows, say_fault
+from assess.web.live import count_classes, describe_failure, describe_rows, list_rows
 from assess.web.route_states import describe_states, describe_unknown
 from assess.workbook.names import key
 from assess.workbook.parse import Tables
@@ -119,4 +119,4 @@ def _describe_side(snapshot: "Snapshot", inventory: Inventory, found: Evaluation
         routes = describe_unknown(tables, gettext(error.message))
     counts = count_classes(rows, tables["Items"])
     side = {"counts": counts, "items": items, "routes": routes["routes"], "rooms": routes["rooms"]}
-    return {"side": side, "error": say_fault(snapshot.problems, found) or routes["error"]}
+    return {"side": side, "error": describe_failure(snapshot.problems, found) or routes["error"]}

@@ -15,7 +15,7 @@ from assess.units import ROUNDING
 from assess.workbook.habits import shorten
 from assess.workbook.names import find_near_name, key
 from assess.workbook.parse import Row, Table, Tables
-from assess.workbook.resolve import build_catalogue, defined, filled_sizes, turned_axis
+from assess.workbook.resolve import defined, filled_sizes, turned_axis, types_by_name
 from assess.workbook.schema import SHAKEN
 
 Check = Callable[[Tables], Iterable[Problem]]
@@ -221,7 +221,7 @@ def check_item_names(tables: Tables) -> Iterator[Problem]:
 def check_items(tables: Tables) -> Iterator[Problem]:
     """Check each piece by itself: its sizes, its position, its axis."""
     table = tables["Items"]
-    types = {key(one.type): one for one in build_catalogue(tables["Catalogue"])}
+    types = types_by_name(tables["Catalogue"])
     lacking: dict[str, list[Row]] = {}
     is_listed = tables["Catalogue"].found
     for row in table.rows:

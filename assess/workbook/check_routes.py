@@ -224,8 +224,8 @@ def check_positions(tables: Tables) -> Iterator[Problem]:
 def _list_on_plan(routes: Table, places: Table) -> Iterator[tuple[Row, dict[str, Row], str, bool]]:
     """Yield the segments that lie on one floor, with their known places by end, and that floor.
 
-    The floor is that of the places where a segment names none. The last value tells whether the segment may be drawn,
-    also where what would tell that has been reported as wrong.
+    The floor is that of the places where a segment names none. The last value is whether the segment may be drawn,
+    also where what that depends on has been reported as wrong.
     """
     known = places_by_name(places)
     for row in routes.rows:

@@ -14,7 +14,7 @@ from assess.methods.expression import EXCEL, Expression
 from assess.risk import LIMITS, RiskClass
 from assess.rocking.block import STOCKY
 from assess.units import ROUNDING
-from assess.workbook.names import fold, plain, say_choices
+from assess.workbook.names import fold, plain, translate_choices
 from assess.workbook.schema import Column
 
 LIVE_METHODS = tuple(one for one in all_methods() if one.is_live)
@@ -124,7 +124,7 @@ def list_words(choices: tuple[str, ...], choice: str) -> str:
     """Return the ways to type a choice, in every language and short, as one text: ``|yes|y|``."""
     ways: list[str] = []
     for code in LANGUAGES:
-        words = dict(zip(choices, say_choices(choices, code), strict=True))
+        words = dict(zip(choices, translate_choices(choices, code), strict=True))
         word, others = words.pop(choice), [fold(other) for other in words.values()]
         ways += [fold(word), plain(word), f"{plain(word)}'"]
         if not any(other.startswith(plain(word)[0]) for other in others):

@@ -5,8 +5,7 @@ with it, and taken again in every reading, so that the limits of a workbook hold
 """
 
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import RLock
@@ -80,28 +79,22 @@ class KeptFiles:
     """What was made of files, by what they were read for and as what they were found.
 
     Used in a ``with`` statement round each reading of the workbook: what that reading did not ask for is forgotten
-    after it, and readings of other threads wait.
+    after it, and readings of other threads wait; `lock` alone has them wait while one file more is asked for.
     """
 
     _made: dict[Key, tuple[Any, Counter[str]]] = field(default_factory=dict)
     _asked: set[Key] = field(default_factory=set)
-    _lock: RLock = field(default_factory=RLock)
+    lock: RLock = field(default_factory=RLock)
 
     def __enter__(self) -> Self:
-        self._lock.acquire()
+        self.lock.acquire()
         self._asked.clear()
         return self
 
     def __exit__(self, *_: object) -> None:
         for key in self._made.keys() - self._asked:
             del self._made[key]
-        self._lock.release()
-
-    @contextmanager
-    def more(self) -> Iterator[None]:
-        """Have readings of other threads wait while one file more is asked for; nothing is forgotten after it."""
-        with self._lock:
-            yield
+        self.lock.release()
 
     def take(self, key: Key | None, allowance: Allowance, make: Callable[[], Any]) -> Any:
         """Return what `make` makes of a file, known by `find_key`, or made before; CellError if that is too much."""

@@ -175,18 +175,18 @@ def find_choice(text: str, choices: tuple[str, ...]) -> str | None:
     if (choice := match_choice(text, choices)) is not None:
         return choice
     for code in _OTHERS:
-        words = {_bare(word): choice for word, choice in zip(say_choices(choices, code), choices, strict=True)}
+        words = {_bare(word): choice for word, choice in zip(translate_choices(choices, code), choices, strict=True)}
         if (word := match_choice(_bare(text), words)) is not None:
             return words[word]
     return next((choice for choice in choices if "," in choice and fold(choice.partition(",")[0]) == fold(text)), None)
 
 
-def say_choices(choices: tuple[str, ...], code: str) -> tuple[str, ...]:
+def translate_choices(choices: tuple[str, ...], code: str) -> tuple[str, ...]:
     """Return choices in a language."""
     return choices if code == ENGLISH else tuple(load_catalogue(code).find(choice) for choice in choices)
 
 
-def say_live(label: str) -> str:
+def translate_header(label: str) -> str:
     """Return the header of a column that Excel computes in the language in use."""
     name, unit = split_header(label)
     return f"{gettext(name)} [{unit}]" if unit else gettext(name)

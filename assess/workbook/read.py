@@ -12,26 +12,26 @@ from typing import TYPE_CHECKING, Any
 
 from assess.errors import InputError, Problem, WorkbookError
 from assess.i18n import fill
-from assess.model import Cost, Inventory, Place, Segment
+from assess.model import CatalogueType, Cost, Inventory, Place, Segment
 from assess.motion.site_ground import GroundField
 from assess.progress import SILENT, Progress, Stage
 from assess.workbook import check, check_routes, draft_names
 from assess.workbook.check import Check
 from assess.workbook.kept_files import KeptFiles
-from assess.workbook.names import ENGLISH, find_near, find_sheet, is_cobie_list, key, plain, translate, versions
+from assess.workbook.names import ENGLISH, find_near, find_sheet, is_cobie_list, plain, translate, versions
 from assess.workbook.open import DAMAGE, WORKBOOK, Book, read_file
 from assess.workbook.parse import CodeCells, Source, Table, Tables, first_row, parse_sheet
 from assess.workbook.picture_files import PictureReader
 from assess.workbook.records import FileReader, Files, fill_building, replace_ground
 from assess.workbook.resolve import (
     build_building,
-    build_catalogue,
     build_floors,
     build_items,
     build_rows,
     correct_names,
     leave_out,
     resolve,
+    types_by_name,
 )
 from assess.workbook.schema import SHEETS, Sheet
 
@@ -113,7 +113,6 @@ def _make(
     path: Path, digest: str, data: bytes | None, tables: Tables, problems: Sequence[Problem], files: FileReader,
     pictures: PictureReader,
 ) -> Inventory:  # fmt: skip
-    catalogue = build_catalogue(tables["Catalogue"])
     return Inventory(
         source=path,
         sha256=digest,
@@ -122,10 +121,10 @@ def _make(
         corrections=tuple(one for table in tables.values() for one in table.corrections),
         building=build_building(tables["Building"], pictures.logo),
         floors=build_floors(tables["Floors"], files.records, pictures.plans),
-        items=build_items(tables["Items"], {key(one.type): one for one in catalogue}),
+        items=build_items(tables["Items"], types_by_name(tables["Catalogue"])),
         places=build_rows(Place, tables["Places"], "place", "floor"),
         routes=build_rows(Segment, tables["Routes"], "route", "segment"),
-        catalogue=catalogue,
+        catalogue=build_rows(CatalogueType, tables["Catalogue"], "type"),
         costs=build_rows(Cost, tables["Costs"], "detail", "unit_cost"),
         hazard=files.hazard,
         site_ground=files.site_ground,

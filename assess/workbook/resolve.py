@@ -100,9 +100,9 @@ def build_rows(kind: type[T], table: Table, *needed: str) -> tuple[T, ...]:
     return tuple(kind(row=row.number, **row.values) for row in table.with_all(*needed))
 
 
-def build_catalogue(table: Table) -> tuple[CatalogueType, ...]:
-    """Return the types of furniture."""
-    return build_rows(CatalogueType, table, "type")
+def types_by_name(catalogue: Table) -> dict[str, CatalogueType]:
+    """Return the types of furniture by their names, as they are compared."""
+    return {key(one.type): one for one in build_rows(CatalogueType, catalogue, "type")}
 
 
 def build_floors(

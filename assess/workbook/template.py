@@ -22,7 +22,7 @@ from assess.workbook.catalogue import read_catalogue
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, write_plainly
 from assess.workbook.lists import FROZEN, LETTERS, PLACES, ROW, ROWS, ListsWriter, Units
 from assess.workbook.live_row import list_live
-from assess.workbook.names import say_live
+from assess.workbook.names import translate_header
 from assess.workbook.schema import CATALOGUE, CLASS, CLASS_OR, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column
 from assess.workbook.writer import write_book
 
@@ -236,7 +236,7 @@ class _Writer:
     def _write_live(self, page: Any) -> None:
         for label in (*LIVE, *WORKINGS):
             at = PLACES[ITEMS.name, label]
-            self._write_head(page, at, say_live(label), _LIVE_WIDTHS.get(label, 10), None, is_live=True)
+            self._write_head(page, at, translate_header(label), _LIVE_WIDTHS.get(label, 10), None, is_live=True)
         page.write_comment(
             0, PLACES[ITEMS.name, CLASS], gettext(CLASS_NOTE, mark=OUTSIDE), {"x_scale": 3, "y_scale": 1.6}
         )

@@ -18,7 +18,7 @@ from assess.i18n import LANGUAGES, Text, fill, find_language, nfill
 from assess.model import Outline
 from assess.units import GRAVITY, QUANTITIES, ROUNDING, read_unit
 from assess.workbook.habits import SHOWN, CellError, Remark, clean, note, shorten
-from assess.workbook.names import DASHES, ENGLISH, find_choice, find_near, plain, say_choices
+from assess.workbook.names import DASHES, ENGLISH, find_choice, find_near, plain, translate_choices
 from assess.workbook.open import UNSAVED, Percent
 from assess.workbook.schema import NO, YES, Column
 
@@ -147,7 +147,7 @@ def _read_choice(column: Column, value: object, unit: str) -> str:
     text = read_text(value)
     if (choice := find_choice(text, column.choices)) is not None:
         return choice
-    own = say_choices(column.choices, column.language)
+    own = translate_choices(column.choices, column.language)
     words = {plain(word): word for word in (*column.choices, *own)}
     near = find_near(plain(text), words)
     mark = "; " if any("," in one for one in own) else ", "
@@ -494,7 +494,7 @@ def _take_choice(column: Column, value: object, unit: str) -> tuple[object, Rema
         if column.kind == "flag" or not {YES, NO} <= {*column.choices}:
             return value, None
         choice = YES if value else NO
-        word = say_choices((choice,), column.language)[0]
+        word = translate_choices((choice,), column.language)[0]
     elif not isinstance(value, str):
         return value, None
     else:
@@ -522,14 +522,15 @@ def find_meant(text: str, choices: tuple[str, ...], language: str) -> tuple[str 
     choice = find_choice(full, choices)
     if choice is None and short:
         for among, code in product(((YES, NO), choices), dict.fromkeys((language, ENGLISH, *LANGUAGES))):
-            words = zip(choices, say_choices(choices, code), strict=True)
+            words = zip(choices, translate_choices(choices, code), strict=True)
             found = [one for one, word in words if one in among and plain(word).startswith(short)]
             if found:
                 choice = found[0] if len(found) == 1 else None
                 break
-    if choice is None or any(typed == word.casefold() for code in LANGUAGES for word in say_choices(choices, code)):
+    written = (word.casefold() for code in LANGUAGES for word in translate_choices(choices, code))
+    if choice is None or typed in written:
         return choice, ""
-    return choice, say_choices(choices, language)[choices.index(choice)]
+    return choice, translate_choices(choices, language)[choices.index(choice)]
 
 
 # ---------------------------------------------------------------- dates and names

@@ -9,7 +9,7 @@ import pytest
 
 from assess.i18n import LANGUAGES, gettext, load_catalogue, speaking
 from assess.workbook.lists import list_columns
-from assess.workbook.names import say_choices, translate
+from assess.workbook.names import translate, translate_choices
 from assess.workbook.schema import CLASS, LISTS, SHEETS, Sheet
 from assess.workbook.template import CHECKED, ROWS, describe, write_workbook
 from tests.workbook.books import read_part
@@ -63,7 +63,7 @@ def test_every_column_has_a_message_and_choices_drop_down(book: Any, code: str) 
                 assert describe(column).startswith(check.prompt.removesuffix("…"))
                 assert check.promptTitle == gettext(column.label)
                 assert len(check.promptTitle) <= 32
-                listed = [*say_choices(column.choices, code)] or [gettext(one) for one in column.offered]
+                listed = [*translate_choices(column.choices, code)] or [gettext(one) for one in column.offered]
                 assert (check.type == "list") == bool(listed or column.source)
                 if check.type != "list":
                     continue

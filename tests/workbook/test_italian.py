@@ -13,7 +13,7 @@ import pytest
 from assess.cli.command_new import write_new_workbook
 from assess.i18n import LANGUAGES, gettext, load_catalogue, speaking
 from assess.model import Inventory
-from assess.workbook.names import plain, say_choices, say_live, translate
+from assess.workbook.names import plain, translate, translate_choices, translate_header
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import LISTS, LIVE, SHEETS, WORKINGS
 from assess.workbook.template import describe
@@ -56,10 +56,10 @@ def test_labels_can_be_told_apart_and_fit_the_spreadsheet() -> None:
             for column in sheet.columns:
                 assert len(gettext(column.label)) <= 32
                 assert len(describe(column)) <= 255
-                words = say_choices(column.choices, "it")
+                words = translate_choices(column.choices, "it")
                 assert len({plain(word) for word in words}) == len(words)
         names = [*(sheet.name for sheet in ITALIAN), gettext("Help"), gettext(LISTS)]
-        live = {plain(say_live(label).split(" [")[0]) for label in (*LIVE, *WORKINGS)}
+        live = {plain(translate_header(label).split(" [")[0]) for label in (*LIVE, *WORKINGS)}
     assert all(name.isascii() and name.isalpha() for name in names), "formulas need not quote them"
     assert len({plain(name) for name in (*names, *NAMES, "Help", LISTS)}) == 2 * len(names)
     items = next(sheet for sheet in ITALIAN if sheet.name == "Arredi")

@@ -20,7 +20,7 @@ from assess.pipeline.live_values import live_values, without_shaking
 from assess.units import QUANTITIES
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.lists import LETTERS, PLACES
-from assess.workbook.names import say_live
+from assess.workbook.names import translate_header
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import LIVE, SHEETS, WORKINGS
 from assess.workbook.template import ROWS, Content, Units, write_workbook
@@ -152,7 +152,7 @@ def poison(path: Path) -> Path:
 def _find_places(heads: Iterable[Any]) -> list[int]:
     """Return the columns of the live values, found by their headers."""
     places = {head: at for at, head in enumerate(heads, 1)}
-    return [places[say_live(label)] for label in LIVE]
+    return [places[translate_header(label)] for label in LIVE]
 
 
 def by_formualizer(path: Path) -> dict[int, Live]:
