@@ -258,11 +258,8 @@ def _import(asked: Asked) -> Answer:
 
 def _describe_import(asked: Asked) -> Answer:
     found, opened = asked.session.reading, asked.session.imported
-    return {
-        "import": found.describe() if found else None,
-        "opened": opened.describe() if opened else None,
-        "most": MOST_MODEL,
-    }
+    described = {"import": found and found.describe(), "opened": opened and opened.describe()}
+    return {**described, "most": MOST_MODEL}
 
 
 # ---------------------------------------------------------------- what answers
@@ -407,7 +404,7 @@ async def _save_model(request: Request, session: Session) -> Path:
             session.check_room(int(request.headers.get("content-length", "0")), room)  # not every request tells it
             return session.make_folder(FOLDER) / SOURCE, room
         except BaseException:
-            session.sending_slots.leave()
+            session.sending_slots.release()
             raise
 
     def check(size: int) -> None:
@@ -427,7 +424,7 @@ async def _save_model(request: Request, session: Session) -> Path:
         shutil.rmtree(path.parent, ignore_errors=True)
         raise
     finally:
-        session.sending_slots.leave()
+        session.sending_slots.release()
     return path
 
 

@@ -36,25 +36,20 @@ class Evaluation:
     problems: tuple[Problem, ...]
 
 
-def evaluate_once(snapshot: "Snapshot", settings: Settings, *, routes: bool = False) -> Evaluation:
-    """Return what is known of a snapshot, once for all who ask; nothing is simulated if `settings.verify` is "none".
+def evaluate(snapshot: "Snapshot", settings: Settings = BY_FORMULAS, *, routes: bool = True) -> Evaluation:
+    """Return what is known of a snapshot, without annual chances, and without routes, which no class needs, on demand.
 
-    Annual chances are left out; where they are not asked for the routes, too, which no class by the formulas needs.
+    What follows from the page's own settings is worked out once for all who ask. Raises InputError if a setting does
+    not fit the inventory, as an unknown piece that is to be anchored, or a record is gone.
     """
-    inventory = snapshot.inventory
-    if not routes or not inventory.routes:
-        lean = replace(inventory, routes=(), hazard=None)
-        return snapshot.keep(settings, lambda: _evaluate(snapshot, lean, settings))
-    return snapshot.keep((settings, "routes"), lambda: _evaluate(snapshot, replace(inventory, hazard=None), settings))
-
-
-def evaluate_other(snapshot: "Snapshot", settings: Settings) -> Evaluation:
-    """Return an evaluation with settings of its own, routes among it, which is not kept."""
-    return _evaluate(snapshot, replace(snapshot.inventory, hazard=None), settings)
+    inventory = replace(snapshot.inventory, hazard=None)
+    inventory = inventory if routes else replace(inventory, routes=())
+    if settings != BY_FORMULAS:
+        return _evaluate(snapshot, inventory, settings)
+    return snapshot.keep(("formulas", bool(inventory.routes)), lambda: _evaluate(snapshot, inventory, settings))
 
 
 def _evaluate(snapshot: "Snapshot", inventory: Inventory, settings: Settings) -> Evaluation:
-    """Assess the pieces of floors of known motion; InputError if a setting does not fit, or a record is gone."""
     kind = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands, faults = serve_floors(inventory, kind, ductility_reduction=settings.ductility_reduction)
     served = {floor for floor, _axis in demands}

@@ -89,10 +89,8 @@ def _find_picture(snapshot: "Snapshot", row: Row | None) -> FloorPicture | None:
     if drawing is None:
         return None
     left, bottom, width = (row.get(f"plan_{name}") for name in ("left", "bottom", "width"))
-    return FloorPicture(
-        drawing.content, drawing.is_lines, drawing.aspect, left, bottom, drawing.width if width is None else width,
-        row.get("plan_turn") or 0.0,
-    )  # fmt: skip
+    return FloorPicture(drawing.content, drawing.is_lines, drawing.aspect, left, bottom,
+                        drawing.width if width is None else width, row.get("plan_turn") or 0.0)  # fmt: skip
 
 
 def _name_piece(row: Row) -> dict[str, Any]:

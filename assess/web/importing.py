@@ -103,7 +103,7 @@ class Import:
             if not isinstance(fault, AssessError | OSError):
                 LOG.exception("a building model could not be read")
         shutil.rmtree(self._folder, ignore_errors=True)
-        self._slots.leave()
+        self._slots.release()
         with self._lock:
             if self.state != "running":
                 return

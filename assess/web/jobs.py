@@ -54,20 +54,17 @@ READING = fill("Other building models are being read. Try again in a minute.")
 """Why there is no place for another."""
 
 
-class Slots:
+class Slots(threading.BoundedSemaphore):
     """How many jobs may run at once, in all sessions; `refusal` says why there is no place."""
 
     def __init__(self, most: int, refusal: Text = BUSY) -> None:
-        self._free, self._refusal = threading.BoundedSemaphore(most), refusal
+        super().__init__(most)
+        self._refusal = refusal
 
     def take(self) -> None:
-        """Take a place; RequestError where there is none."""
-        if not self._free.acquire(blocking=False):
+        """Take a place, to be released; RequestError where there is none."""
+        if not self.acquire(blocking=False):
             raise RequestError(self._refusal, TOO_MANY)
-
-    def leave(self) -> None:
-        """Give a place back."""
-        self._free.release()
 
 
 class Job:
@@ -96,7 +93,7 @@ class Job:
                     env={**os.environ, **variables, "PYTHONSAFEPATH": "1"}, start_new_session=True,
                 )  # fmt: skip
         except BaseException:
-            slots.leave()
+            slots.release()
             shutil.rmtree(self._folder, ignore_errors=True)
             raise
         self._reader = threading.Thread(target=copy_context().run, args=(self._listen,), name="assess-job", daemon=True)
@@ -118,7 +115,7 @@ class Job:
                     last = message
                 elif self.is_running:
                     self._now.update(message)
-        self._slots.leave()
+        self._slots.release()
         with self._lock:
             if self.is_running:
                 self._now.update(last)

@@ -21,7 +21,7 @@ from assess.model import AXES, Inventory
 from assess.pipeline.assessment import Assessment
 from assess.risk import RiskClass, classify_all
 from assess.units import GRAVITY, LENGTH, VELOCITY
-from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, list_floors
+from assess.web.evaluation import Evaluation, evaluate, list_floors
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.habits import list_groups
 from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
@@ -123,7 +123,7 @@ def _describe_state(snapshot: "Snapshot") -> _State:
         every = snapshot.sheets["Items"].columns
         columns = {at: every[at].live for at in sorted(every) if every[at].live in (*SHOWN_WORKINGS, *LIVE)}
         try:
-            found = evaluate_once(snapshot, BY_FORMULAS)
+            found = evaluate(snapshot, routes=False)
             fault = describe_failure(snapshot.problems, found)
         except AssessError as error:
             found = Evaluation(None, frozenset(key(one.floor) for one in inventory.floors), ())

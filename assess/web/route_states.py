@@ -11,7 +11,7 @@ from assess.progress import SILENT
 from assess.report.say import route as say
 from assess.route_results import RoomRow, RouteRow, RouteState, RouteTables, SegmentRow
 from assess.routes.obstructions import find_route_problems
-from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, list_floors
+from assess.web.evaluation import Evaluation, evaluate, list_floors
 from assess.web.live import describe_problems
 from assess.workbook.names import key
 from assess.workbook.parse import Tables
@@ -26,7 +26,7 @@ def describe_routes(snapshot: "Snapshot") -> dict[str, Any]:
     inventory = snapshot.inventory
     with speaking(load_catalogue(inventory.language)):
         try:
-            found = evaluate_once(snapshot, BY_FORMULAS, routes=True)
+            found = evaluate(snapshot)
             states = describe_states(snapshot.tables, inventory, found)
             assessed = found.assessment
             shown = () if assessed is None else find_route_problems(assessed.inventory, assessed.obstructions)

@@ -181,12 +181,10 @@ class Server:
             hosts, schemes = list(place.allowed), ["http", "https"]
         self._keeper = Keeper(self._keys)
         application = build_application(self._keeper.note_edit)
-        config = uvicorn.Config(
-            Guard(application, self._keys, hosts, schemes), access_log=False,
-            log_config=None, log_level="critical", lifespan="off", ws="none", http="h11", loop="asyncio",
-            server_header=False, date_header=False, proxy_headers=False, timeout_graceful_shutdown=GRACE,
-            timeout_keep_alive=30,
-        )  # fmt: skip
+        config = uvicorn.Config(Guard(application, self._keys, hosts, schemes), access_log=False, log_config=None,
+                                log_level="critical", lifespan="off", ws="none", http="h11", loop="asyncio",
+                                server_header=False, date_header=False, proxy_headers=False,
+                                timeout_graceful_shutdown=GRACE, timeout_keep_alive=30)  # fmt: skip
         self._uvicorn = _Uvicorn(config)
 
     def take(self, book: "Book") -> str:

@@ -14,7 +14,7 @@ from assess.pipeline.anchors import anchor_named, spell_names
 from assess.pipeline.run import evaluate_route_tables, list_first_fixes
 from assess.progress import SILENT
 from assess.settings import SCENARIOS, Settings, show_given
-from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate_once, evaluate_other
+from assess.web.evaluation import BY_FORMULAS, Evaluation, evaluate
 from assess.web.live import count_classes, describe_failure, describe_rows, list_rows
 from assess.web.route_states import describe_states, describe_unknown
 from assess.workbook.names import key
@@ -38,33 +38,27 @@ def try_out(snapshot: "Snapshot", request: object) -> dict[str, Any]:
     inventory = snapshot.inventory
     with speaking(load_catalogue(inventory.language)):
         settings, first = _read_request(inventory, snapshot.tables, request)
-        present = evaluate_once(snapshot, BY_FORMULAS, routes=True)
+        present = evaluate(snapshot)
         before = snapshot.keep("before", lambda: _describe_side(snapshot, inventory, present))
         entries = snapshot.keep("entries", lambda: _name_entries(present))
         if first and settings != BY_FORMULAS:
-            entries = _name_entries(evaluate_other(snapshot, settings))
+            entries = _name_entries(evaluate(snapshot, settings))
         anchored = settings.anchor if isinstance(settings.anchor, tuple) else ()
         named = tuple(dict.fromkeys((*anchored, *(one for each in entries[:first] for one in each))))
         settings = replace(settings, anchor=named)
         after = before
         if settings != BY_FORMULAS:
-            after = _describe_side(snapshot, anchor_named(inventory, named), evaluate_other(snapshot, settings))
+            after = _describe_side(snapshot, anchor_named(inventory, named), evaluate(snapshot, settings))
         own = inventory.building.scenario_kind or SCENARIOS[0]
         scenarios = [
             [one, gettext("{scenario} (the workbook's own)", scenario=gettext(one)) if one == own else gettext(one)]
             for one in SCENARIOS
         ]
     return {
-        "version": snapshot.version,
-        "scenarios": scenarios,
-        "scenario": settings.scenario or own,
-        "entries": len(entries),
-        "first": len(entries[:first]),
-        "before": before["side"],
-        "after": after["side"],
-        "anchored": [one.row for one in inventory.items if one.item in named],
-        "error": after["error"],
-    }
+        "version": snapshot.version, "scenarios": scenarios, "scenario": settings.scenario or own,
+        "entries": len(entries), "first": len(entries[:first]), "before": before["side"], "after": after["side"],
+        "anchored": [one.row for one in inventory.items if one.item in named], "error": after["error"],
+    }  # fmt: skip
 
 
 def _read_request(inventory: Inventory, tables: Tables, request: object) -> tuple[Settings, int]:
@@ -83,11 +77,8 @@ def _read_request(inventory: Inventory, tables: Tables, request: object) -> tupl
     known = {key(one.item) for one in inventory.items}
     rows = {key(row.get("item")): row.number for row in tables["Items"].with_all("item")}
     if left := next((name for name in names if key(name) not in known and key(name) in rows), None):
-        raise InputError.about(
-            "{name} cannot be anchored: its row {row} has an error or a blank.",
-            name=show_given(left),
-            row=rows[key(left)],
-        )
+        raise InputError.about("{name} cannot be anchored: its row {row} has an error or a blank.",
+                               name=show_given(left), row=rows[key(left)])  # fmt: skip
     if not isinstance(scale, int | float) or isinstance(scale, bool) or not abs(scale) < FAR:  # NaN among them
         raise InputError.about("scale is {value}, expected a number.", value=show_given(scale))
     scenario = given.get("scenario") or None

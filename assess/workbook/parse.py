@@ -208,11 +208,9 @@ def parse_sheet(english: Sheet, own: Sheet, language: str, source: Source) -> tu
         return Table(sheet=own, language=language, found=True, source=source).with_failed(problems), problems
     named = {column.name: column for column in parser.headers.values()}
     sheet = replace(own, columns=tuple(named.get(column.name, column) for column in own.columns))
-    table = Table(
-        sheet=sheet, language=language, found=True, source=source, places=parser.places, rows=tuple(rows),
-        extra=tuple(parser.others.values()), blind=frozenset(parser.blind), failed=frozenset(parser.covered),
-        corrections=tuple(parser.corrections), header=parser.header, units=parser.units,
-    )  # fmt: skip
+    table = Table(sheet=sheet, language=language, found=True, source=source, places=parser.places, rows=tuple(rows),
+                  extra=tuple(parser.others.values()), blind=frozenset(parser.blind), failed=frozenset(parser.covered),
+                  corrections=tuple(parser.corrections), header=parser.header, units=parser.units)  # fmt: skip
     return table.with_failed(parser.problems), parser.problems
 
 

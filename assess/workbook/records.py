@@ -1,9 +1,7 @@
-"""Files that the workbook names: recorded motions, a hazard curve.
+"""Files that the workbook names: recorded motions, a hazard curve, a ShakeMap.
 
-Only files inside one folder are touched.
-
-A name is judged as text first, by the rules of both Windows and POSIX, before the file system sees it: resolving a
-network path would already talk to another machine.
+Only files inside one folder are touched. A name is judged as text first, by the rules of both Windows and POSIX, before
+the file system sees it: resolving a network path would already talk to another machine.
 """
 
 import hashlib
@@ -321,10 +319,8 @@ def find_place(text: str, folder: Path) -> Path:
     is_absolute = windows.drive or windows.root or posix.is_absolute() or ":" in text
     is_reserved = any(part.split(".")[0].upper() in _RESERVED for part in windows.parts)
     if is_odd or is_absolute or is_reserved or ".." in windows.parts or ".." in posix.parts:
-        raise CellError(
-            fill("the file {name} is outside the workbook's folder.", name=name),
-            fill("Copy it next to the workbook and write its name alone."),
-        )
+        raise CellError(fill("the file {name} is outside the workbook's folder.", name=name),
+                        fill("Copy it next to the workbook and write its name alone."))  # fmt: skip
     try:
         path = (folder / _posix(text)).resolve()
         path.is_file()

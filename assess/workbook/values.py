@@ -50,12 +50,9 @@ def read_text(value: object) -> str:
 
 @lru_cache(maxsize=512)
 def cell_reader(column: Column, unit: str) -> CellReader:
-    """Return what gives the value in SI of a column's cell, and what is remarkable about it.
+    """Return what reads the cells of a column whose header has a unit; a blank one, or one of unseen marks, is None.
 
-    `unit` is that of the column's header. The value of a blank cell is None, as of a text of unseen marks alone. What
-    was read is kept: the same values stand in row after row, book after book.
-
-    What is returned raises CellError if the cell does not hold what the column needs.
+    What was read is kept: the same values stand in row after row, book after book.
     """
     read_new = partial(_read_cell, column, unit)
     read_known = lru_cache(maxsize=1024, typed=True)(read_new)
@@ -75,10 +72,8 @@ def _read_cell(column: Column, unit: str, value: object) -> tuple[object, tuple[
         if value is UNSAVED:
             raise CellError(fill("the formula has no saved value."), fill("Open the workbook in Excel and save it."))
         if column.kind not in ("number", "count") and isinstance(value, str) and value.strip() in ERRORS:
-            raise CellError(
-                fill("{label} holds the error {error}.", label=column.label, error=value.strip()),
-                fill("Correct the formula in the cell."),
-            )
+            raise CellError(fill("{label} holds the error {error}.", label=column.label, error=value.strip()),
+                            fill("Correct the formula in the cell."))  # fmt: skip
         if not is_free(column):
             meant, remark = understand(column, value, unit)
             remarks += [remark] if remark else []
@@ -114,21 +109,20 @@ def _read_typed(label: str, value: object, unit: str) -> float:
     if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
         return float(value)
     named = {"label": label, "text": shorten(value), "unit": f" [{unit}]" if unit else ""}
-    retype = fill("Set the cell's format to General and type the number again.")
     if isinstance(value, (*_TIMES, datetime.timedelta)):
-        raise CellError(
-            fill("{label} holds a date or time ({value}), expected a number{unit}.", value=value, **named), retype
-        )
-    if not isinstance(value, str):
+        message = fill("{label} holds a date or time ({value}), expected a number{unit}.", value=value, **named)
+        fix = fill("Set the cell's format to General and type the number again.")
+    elif not isinstance(value, str):
         shown = str(value).upper() if isinstance(value, bool) else shorten(value)
         message = fill("{label} is {value}, expected a number{unit}.", value=shown, **named)
-        raise CellError(message, fill("Type the number."))
-    if value.strip() in ERRORS:
+        fix = fill("Type the number.")
+    elif value.strip() in ERRORS:
         message = fill("{label} holds the error {error}.", label=label, error=value.strip())
-        raise CellError(message, fill("Correct the formula in the cell, or type the number."))
-    raise CellError(
-        fill("{label} is the text {text}, expected a number{unit}.", **named), fill("Type the number alone.")
-    )
+        fix = fill("Correct the formula in the cell, or type the number.")
+    else:
+        message = fill("{label} is the text {text}, expected a number{unit}.", **named)
+        fix = fill("Type the number alone.")
+    raise CellError(message, fix)
 
 
 def _read_count(column: Column, value: object, unit: str) -> int:
@@ -307,12 +301,10 @@ def is_free(column: Column) -> bool:
 
 
 def understand(column: Column, value: object, unit: str) -> tuple[object, Remark | None]:
-    """Return what belongs into a cell, and the note on that where it is not what the cell holds.
+    """Return what belongs into a cell, and the note on that where it is not what the cell holds, `value`.
 
-    The value is a number in the unit of the header, a choice, a date or a name; `value` itself where nothing else can
-    be meant.
-
-    Raises CellError if the cell can be read in two ways, or holds a day that does not exist.
+    That is a number in the unit of the header, a choice, a date or a name. Raises CellError if the cell can be read in
+    two ways, or holds a day that does not exist.
     """
     take = _TAKERS.get(column.kind)
     return take(column, value, unit) if take else (value, None)
@@ -571,8 +563,6 @@ _TAKERS: Mapping[str, _Taker] = {
 }
 
 
-# ---------------------------------------------------------------- dates, as people type them
-
 _MONTHS = (
     ("january", "gennaio"), ("february", "febbraio"), ("march", "marzo"), ("april", "aprile"), ("may", "maggio"),
     ("june", "giugno"), ("july", "luglio"), ("august", "agosto"), ("september", "settembre"), ("october", "ottobre"),
@@ -591,11 +581,8 @@ AS_ISO = fill("Write it as year-month-day: 2026-12-31.")
 def _read_date(label: str, text: str, shown: str) -> str | None:
     """Return a date as an ISO date, None for a text that is not written as one.
 
-    Understood are 2026-12-31, 31/12/2026, 12.31.2026, 31 Dec 2026, December 31, 2026 and 31 dicembre 2026.
-
-    `text`: with plain spaces and signs.
-    `shown`: the text as messages quote it.
-    Raises CellError if there is no such day, or the order of day and month cannot be known.
+    Understood are 2026-12-31, 31/12/2026, 12.31.2026, 31 Dec 2026, December 31, 2026 and 31 dicembre 2026. CellError if
+    there is no such day, or the order of day and month cannot be known.
     """
     if _SHORT_YEAR.fullmatch(text):
         message = fill("{label} is {text}: the year has two digits.", label=label, text=shown)
