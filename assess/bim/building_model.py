@@ -14,22 +14,15 @@ from typing import Any, Literal
 
 from assess.i18n import Text, fill
 
-ON_FLOOR = 0.15
-"""Height of its lowest point above the floor up to which a piece stands on it [m]."""
-SILL = 0.3
-"""Height of its lower edge above the floor up to which people walk through an opening [m]."""
+ON_FLOOR = 0.15  # height of its lowest point above the floor up to which a piece stands on it [m]
+SILL = 0.3  # height of its lower edge above the floor up to which people walk through an opening [m]
 NOT_ON_FLOOR = fill("not on the floor: its lowest point is more than 15 cm above it")
 IS_TILTED = fill("not upright")
-LONGEST_NAME = 120
-"""Characters that are kept of a name."""
-SMALLEST_ROOM = 0.5
-"""Area below which an outline is not taken as a room [m2]."""
-FARTHEST = 10_000.0
-"""Distance from the origin up to which positions are kept as they are [m]."""
-ROUND = 100.0
-"""What is taken off positions farther away is a multiple of this [m]."""
-REACH = 2000.0
-"""Distance from the middle of the building up to which something belongs to it, along X and Y [m]."""
+LONGEST_NAME = 120  # characters that are kept of a name
+SMALLEST_ROOM = 0.5  # area below which an outline is not taken as a room [m2]
+FARTHEST = 10_000.0  # distance from the origin up to which positions are kept as they are [m]
+ROUND = 100.0  # what is taken off positions farther away is a multiple of this [m]
+REACH = 2000.0  # distance from the middle of the building up to which something belongs to it, along X and Y [m]
 FAR = fill("more than {reach:g} km from the middle of the building", reach=REACH / 1000)
 
 Point = tuple[float, float]

@@ -38,46 +38,27 @@ DoorKind = Literal["inside", "exit", "outside", "same room", "no room"]
 
 PROBES = (0.15, 0.35, 0.65)
 """Distances from the face of the door, and of the wall, at which a space is looked for, the nearest first [m]."""
-THINNEST = 0.1
-"""A wall is taken to be at least so thick [m]."""
-THICKEST = 1.5
-"""So far from the centre of a door the face of its wall is looked for [m]."""
-REACH = 0.02
-"""How far a space may be from the point at which it is looked for [m]."""
-BASEMENT = -1.0
-"""A storey whose floor is lower than this above the building's zero is a basement [m]."""
-LOW = 0.1
-"""A piece that is no higher than this is stepped over [m]."""
-JAMB = 0.1
-"""What is kept free from either edge of a passage [m]."""
-NARROWEST = 0.2
-"""Least half width of a passage in which ways may run [m]."""
-FAR = 2.0
-"""A stair end is joined to rooms up to this far away [m]."""
-DOOR_LESS = 0.1
-"""What frame and leaf take of the overall width of a door, assumed [m]."""
-SAME = 0.005
-"""Difference up to which two widths are the same [m]."""
-TOLERANCE = 0.1
-"""To this the middle of the free floor is found [m]; in large rooms to a share of their extent."""
+THINNEST = 0.1  # a wall is taken to be at least so thick [m]
+THICKEST = 1.5  # so far from the centre of a door the face of its wall is looked for [m]
+REACH = 0.02  # how far a space may be from the point at which it is looked for [m]
+BASEMENT = -1.0  # a storey whose floor is lower than this above the building's zero is a basement [m]
+LOW = 0.1  # a piece that is no higher than this is stepped over [m]
+JAMB = 0.1  # what is kept free from either edge of a passage [m]
+NARROWEST = 0.2  # least half width of a passage in which ways may run [m]
+FAR = 2.0  # a stair end is joined to rooms up to this far away [m]
+DOOR_LESS = 0.1  # what frame and leaf take of the overall width of a door, assumed [m]
+SAME = 0.005  # difference up to which two widths are the same [m]
+TOLERANCE = 0.1  # to this the middle of the free floor is found [m]; in large rooms to a share of their extent
 EXTENT_SHARE = 200
-MIDWAY = 0.1
-"""A point that is this near to the middle between two walls is moved there [m]."""
-APART = 0.3
-"""The place of a room is at least this far from doors and stairs, where there is room [m]."""
-NARROWEST_OPENING = 0.6
-"""Least width of an opening that a person walks through [m]."""
+MIDWAY = 0.1  # a point that is this near to the middle between two walls is moved there [m]
+APART = 0.3  # the place of a room is at least this far from doors and stairs, where there is room [m]
+NARROWEST_OPENING = 0.6  # least width of an opening that a person walks through [m]
 STEP = 0.1
-WIDEST_GAP = 0.55
-"""Two rooms that are farther apart than this are not joined without a door [m]."""
-INSIDE = 0.05
-"""Rays begin this far inside a room, so that a wall drawn on its edge is met [m]."""
-NEXT_TO_DOOR = 0.15
-"""Up to this far from a door no opening is looked for: the wall is cut away there [m]."""
-ONE_OPENING = 1.0
-"""Two openings between the same rooms that are nearer than this are one [m]."""
-MOST_RAYS = 200_000
-"""So many rays are followed on a storey; rooms with more edges than that are left out."""
+WIDEST_GAP = 0.55  # two rooms that are farther apart than this are not joined without a door [m]
+INSIDE = 0.05  # rays begin this far inside a room, so that a wall drawn on its edge is met [m]
+NEXT_TO_DOOR = 0.15  # up to this far from a door no opening is looked for: the wall is cut away there [m]
+ONE_OPENING = 1.0  # two openings between the same rooms that are nearer than this are one [m]
+MOST_RAYS = 200_000  # so many rays are followed on a storey; rooms with more edges than that are left out
 AT_ONCE, MOST_HITS = 5_000, 1_000_000
 """Rays that are followed at once, and hits of rooms after which no more are: rooms that lie in each other have many."""
 

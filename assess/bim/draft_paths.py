@@ -24,33 +24,21 @@ from assess.bim.plan_shapes import NARROWEST, find_largest, find_width, list_rin
 
 TRIES = ((0.48, True, 1.0), (0.35, True, 1.5), (0.2, False, 3.0), (0.05, False, 5.0))
 """What is tried in this order: the distance kept [m], whether ways go round furniture, and the cost of a metre [-]."""
-BEND = 0.5
-"""What a segment costs beyond its length, so that a way has few of them [m]."""
-OFF_AXIS = 3.0
-"""Cost of a metre in a corridor off its middle line [-]."""
-SHORTEST = 0.05
-"""Two nodes that are nearer than this are not joined [m]."""
-TIGHT = 0.01
-"""What rounding may take of the floor [m]."""
+BEND = 0.5  # what a segment costs beyond its length, so that a way has few of them [m]
+OFF_AXIS = 3.0  # cost of a metre in a corridor off its middle line [-]
+SHORTEST = 0.05  # two nodes that are nearer than this are not joined [m]
+TIGHT = 0.01  # what rounding may take of the floor [m]
 MOST_CORNERS, NEAREST = 100, 20
 """In a room with more corners, or more doors, than this each is joined to so many of its nearest only."""
-MOST_OF_ROOM = 1500
-"""Corners of one room that are used; of more, those are left out that are far from its doors."""
-PARALLEL = 0.996
-"""Least cosine of the angle between two walls that face each other [-]: 5 degrees."""
-OVERLAP = 1.2
-"""Two walls face each other over at least so many times their distance [-]."""
-MUCH_WIDER = 1.6
-"""Walls that are so many times farther apart than the corridor is wide are not its two sides [-]."""
+MOST_OF_ROOM = 1500  # corners of one room that are used; of more, those are left out that are far from its doors
+PARALLEL = 0.996  # least cosine of the angle between two walls that face each other [-]: 5 degrees
+OVERLAP = 1.2  # two walls face each other over at least so many times their distance [-]
+MUCH_WIDER = 1.6  # walls that are so many times farther apart than the corridor is wide are not its two sides [-]
 MOST_WALLS = 80
-SNAP = 0.6
-"""Two places on the middle line that are nearer than this are one [m]."""
-BESIDE = 1.2
-"""A door up to this far outside the two walls is in one of them [m]."""
-BEYOND = 1.5
-"""What is up to so many widths beyond the end of a middle line is joined to that end [-]."""
-INSET = 0.45
-"""Middle lines end this far from the walls at their ends [m]."""
+SNAP = 0.6  # two places on the middle line that are nearer than this are one [m]
+BESIDE = 1.2  # a door up to this far outside the two walls is in one of them [m]
+BEYOND = 1.5  # what is up to so many widths beyond the end of a middle line is joined to that end [-]
+INSET = 0.45  # middle lines end this far from the walls at their ends [m]
 
 
 Way = tuple[str, str, dict[str, Any]]

@@ -44,27 +44,20 @@ from assess.workbook.schema import DEFAULT_WIDTH, ROUTES
 
 Rows = Sequence[Mapping[str, Any]]
 
-IN_ROOM = 0.3
-"""A segment runs through a room if it is longer than this there [m]."""
+IN_ROOM = 0.3  # a segment runs through a room if it is longer than this there [m]
 FALLS_OVER = 3.0
 """A piece of the next room may fall through an opening that is no farther from a segment than this [m]."""
 BEHIND_WALL = 1.0
 """A piece of the next room that is so near to a segment, but behind a wall, would seem to stand in it [m]."""
 MOST_NAMED = 10
-SHORT = 40
-"""Characters that are kept of a long name which a number tells apart."""
+SHORT = 40  # characters that are kept of a long name which a number tells apart
 NARROWEST = ROUTES.column("clear_width").low or 0.0
 """Least clear width that a workbook takes [m]."""
-BESIDE = 1.5
-"""Walls and columns up to this far to the left and to the right of a segment bound it [m]."""
-SLIVER = 1e-4
-"""Area below which what stands beside a segment is an error of rounding [m2]."""
-SHORTEST = 0.02
-"""A part of a segment that is shorter than this has no sides [m]."""
-AT_STAIR = 0.5
-"""Around a stair, and so far beside it, no width is measured: ways lead to it from any side [m]."""
-PER_RISE = 2.5
-"""Length of the way on a stair to each metre that it rises [-]."""
+BESIDE = 1.5  # walls and columns up to this far to the left and to the right of a segment bound it [m]
+SLIVER = 1e-4  # area below which what stands beside a segment is an error of rounding [m2]
+SHORTEST = 0.02  # a part of a segment that is shorter than this has no sides [m]
+AT_STAIR = 0.5  # around a stair, and so far beside it, no width is measured: ways lead to it from any side [m]
+PER_RISE = 2.5  # length of the way on a stair to each metre that it rises [-]
 
 
 # ---------------------------------------------------------------- the network of all ways

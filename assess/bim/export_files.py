@@ -39,8 +39,7 @@ from assess.report import words
 from assess.resources import open_input
 from assess.text import plain_line
 
-LONGEST_LABEL = 255
-"""Characters of an IfcLabel."""
+LONGEST_LABEL = 255  # characters of an IfcLabel
 _DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz_$"
 _END = re.compile(rb"ENDSEC\s*;(?:\s|/\*(?:[^*]|\*(?!/))*\*/)*END-ISO-10303-21\s*;")
 _TAIL = 65536

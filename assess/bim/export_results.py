@@ -35,12 +35,9 @@ from assess.schedule_results import ScheduleRow, WorkRow
 from assess.settings import SCENARIOS
 from assess.workbook.names import key
 
-LONGEST = 60
-"""Characters of a description that a title shows."""
-MOST_KINDS = 3
-"""Kinds of pieces that a title names; the rest are counted."""
-MOST_CHANCES = 20
-"""Pieces of a topic whose chances its description lists; the Excel report holds all."""
+LONGEST = 60  # characters of a description that a title shows
+MOST_KINDS = 3  # kinds of pieces that a title names; the rest are counted
+MOST_CHANCES = 20  # pieces of a topic whose chances its description lists; the Excel report holds all
 
 Point = tuple[float, float]
 

@@ -64,12 +64,9 @@ VERSION = (
     'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:noNamespaceSchemaLocation="version.xsd">\n'
     "  <DetailedVersion>2.1</DetailedVersion>\n</Version>\n"
 )
-FIELD_OF_VIEW = 60.0
-"""Horizontal [deg]; BCF 2.1 allows 45 to 60."""
-PICTURE = 4 / 3
-"""Width over height of the picture."""
-USED = 0.95
-"""Part of the picture that may be used: a rim stays free."""
+FIELD_OF_VIEW = 60.0  # horizontal [deg]; BCF 2.1 allows 45 to 60
+PICTURE = 4 / 3  # width over height of the picture
+USED = 0.95  # part of the picture that may be used: a rim stays free
 DISTANCE, EYE, LOWER = 3.0, 2.2, 1.5
 """Distance of the camera from a piece, and its height above the piece's base: under the usual ceilings [m].
 
@@ -83,20 +80,15 @@ GRID, RAYS, RINGS = 9, 16, (0.6, 0.8, 1.0, 1.5, 2.0)
 """Where in a room a camera is tried: places along each side, directions around the pieces, parts of the distance."""
 TURNS = tuple(math.radians(sign * turn) for turn in (0, 22.5, 45, 67.5) for sign in (1, -1))
 """Directions in which the camera steps back, from that to which the first piece may fall."""
-FARTHER, STEPS = 1.1, 100
-"""Factor by which the camera steps back, and how often at most."""
-ROUNDS = 6
-"""How often the direction of a camera is turned to the middle of what it sees."""
+FARTHER, STEPS = 1.1, 100  # factor by which the camera steps back, and how often at most
+ROUNDS = 6  # how often the direction of a camera is turned to the middle of what it sees
 STEEPEST = 1e-3
 """Sine of the angle between the camera's direction and the vertical below which it looks straight down."""
 NO_SIDE = 0.5
 """Distance from the middle of the room up to which a piece whose back is not known is seen from anywhere [m]."""
-AGREE = 0.5
-"""Distance up to which the positions of workbook and model are the same, in the median [m]."""
-NEAR_DOOR = 1.0
-"""Distance from an end of a segment, or from its line, up to which a door belongs to it [m]."""
-SAME_STOREY = 2.0
-"""Difference in height up to which a door is on the storey of a piece [m]."""
+AGREE = 0.5  # distance up to which the positions of workbook and model are the same, in the median [m]
+NEAR_DOOR = 1.0  # distance from an end of a segment, or from its line, up to which a door belongs to it [m]
+SAME_STOREY = 2.0  # difference in height up to which a door is on the storey of a piece [m]
 Pair = tuple[ExportPiece, ModelElement]
 
 

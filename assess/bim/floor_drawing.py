@@ -9,16 +9,13 @@ from itertools import chain, count
 from assess.bim.building_model import Area, BuildingModel, Point, Storey
 from assess.bim.plan_shapes import direction_of
 
-MARGIN = 0.5
-"""Room round what is drawn [m]."""
-LONGEST_NAME = 60
-"""Characters of the name of a plan's file."""
+MARGIN = 0.5  # room round what is drawn [m]
+LONGEST_NAME = 60  # characters of the name of a plan's file
 STYLE = (
     ".wall{fill:#4d4d4d;stroke:#333}.window{fill:#cfe3ef;stroke:#4a7d9b}.room{fill:none;stroke:#bbb}"
     ".door{fill:none;stroke:#8a5a00}"
 )
-LINE = 0.02
-"""Width of lines [m]."""
+LINE = 0.02  # width of lines [m]
 _HEAD = re.compile(rb'<svg xmlns="http://www\.w3\.org/2000/svg" viewBox="0 0 [\d.]+ [\d.]+"><style>\.wall\{')
 
 

@@ -64,33 +64,25 @@ _SCHEMA = re.compile(rb"FILE_SCHEMA\s*\(\s*\(\s*'([^']{1,80})'", re.IGNORECASE)
 SCHEMAS = ("IFC2X3", "IFC4", "IFC4X3")
 """Schemas that are read, with their corrections such as IFC4X3_ADD2."""
 _NO_MODEL = fill("it does not begin as an IFC file (ISO-10303-21) does. Export the building as IFC (.ifc, STEP)")
-_DEEPEST = 20
-"""Levels of parts and containers that are followed: a model may hold a loop."""
+_DEEPEST = 20  # levels of parts and containers that are followed: a model may hold a loop
 THREADS = 1
 """Of the library: two wait for each other for ever at some damaged elements, and are no faster on small models."""
-MOST_TRIANGLES = 2_000_000
-"""Triangles of one element beyond which its shape is not taken."""
-FARTHEST = 1e8
-"""Distance from the origin beyond which a shape is not taken [m]: no map grid reaches as far."""
+MOST_TRIANGLES = 2_000_000  # triangles of one element beyond which its shape is not taken
+FARTHEST = 1e8  # distance from the origin beyond which a shape is not taken [m]: no map grid reaches as far
 
 _PLACEHOLDERS = ("enter address here", "//", "default", "<default>", "project number", "project name", "undefined")
 """What programs write where nobody has typed a name or an address."""
-LONGEST = 1000
-"""Characters that are kept of a text."""
+LONGEST = 1000  # characters that are kept of a text
 _Found = TypeVar("_Found")
-SAME = 0.05
-"""Difference up to which two heights are the same [m]."""
+SAME = 0.05  # difference up to which two heights are the same [m]
 MOST_NAMED = 20
 _ARC = (1.0, 60.0, 3600.0, 3.6e9)
 """Parts of an IfcCompoundPlaneAngleMeasure in a degree: degrees, minutes, seconds, millionths of a second."""
-CUT = 1.2
-"""Height above the floor at which walls are cut for the plan [m]."""
+CUT = 1.2  # height above the floor at which walls are cut for the plan [m]
 WALLS = ("IfcWall", "IfcColumn", "IfcCurtainWall", "IfcPlate", "IfcMember")
 STAIRS = ("IfcStair", "IfcStairFlight", "IfcRamp", "IfcRampFlight")
-CLEARLY_LONGER = 2.0
-"""Ratio of sides from which a plan tells the direction of a wall by itself [-]."""
-RISER = 0.35
-"""Height within which the first and the last step of a stair lie [m]."""
+CLEARLY_LONGER = 2.0  # ratio of sides from which a plan tells the direction of a wall by itself [-]
+RISER = 0.35  # height within which the first and the last step of a stair lie [m]
 AT_FOOT, LEAST_RISE, ABOVE_HEAD = 0.7, 1.5, 0.3
 """A stair's foot lies within this of its storey's floor; its head is at the highest storey between these above its foot
 and its top [m]."""
@@ -114,10 +106,8 @@ NO_SHAPE = fill("no geometry")
 NO_PIECE = fill("its class is not furniture; it can be imported by the name of its class")
 _FEWEST, _NEARLY_ALL, _ALIKE = 3, 0.8, 0.03
 """Pieces, their share [-] and their heights [m] by which furniture tells the floor of its storey."""
-_HUNG = (0.6, 2.4)
-"""Heights at which furniture hangs on walls [m]."""
-_NEAR_FLOOR = 0.3
-"""How far below the floor of a room a piece may begin to stand in it [m]."""
+_HUNG = (0.6, 2.4)  # heights at which furniture hangs on walls [m]
+_NEAR_FLOOR = 0.3  # how far below the floor of a room a piece may begin to stand in it [m]
 
 
 # ---------------------------------------------------------------- the file

@@ -26,17 +26,14 @@ from assess.errors import AssessError, ModelError
 from assess.i18n import fill
 from assess.progress import Progress
 
-SECONDS = 120
-"""Processor time that the work may take [s]; the clock may show `PATIENCE` times as much."""
-MEMORY = 4 * 2**30
-"""Memory that it may use [bytes]."""
+SECONDS = 120  # processor time that the work may take [s]; the clock may show `PATIENCE` times as much
+MEMORY = 4 * 2**30  # memory that it may use [bytes]
 PATIENCE = 4
 _ASKED_EVERY = 0.05
 PREFIX = "assess-model-"
 ORDER, ANSWER = "order", "answer"
 """Names of the files in which a process gets its work and leaves what came out."""
-OUT_OF_MEMORY, TOO_LONG = 3, 4
-"""Status of a process whose memory ran out, and of one that the clock stopped."""
+OUT_OF_MEMORY, TOO_LONG = 3, 4  # status of a process whose memory ran out, and of one that the clock stopped
 
 _Found = TypeVar("_Found")
 _Given = ParamSpec("_Given")

@@ -41,10 +41,8 @@ Row = dict[str, Any]
 Drafts = Literal["none", "draft"]
 """Whether evacuation routes are drafted."""
 CENTIMETRES = 100.0
-SAME = 0.005
-"""Difference up to which two sizes are the same [m]."""
-ALONG = 1.0
-"""Angle between an edge and a side of a piece up to which the edge is along it [deg]."""
+SAME = 0.005  # difference up to which two sizes are the same [m]
+ALONG = 1.0  # angle between an edge and a side of a piece up to which the edge is along it [deg]
 STAIRS = (
     "stair", "stairs", "staircase", "stairway", "stairwell", "treppe", "treppen", "treppenhaus", "treppenraum", "scala",
     "scale",
@@ -54,8 +52,7 @@ CORRIDORS = (
     "gang", "diele", "corridoio", "disimpegno", "atrio", "ingresso",
 )  # fmt: skip
 """Words in names of stairs and of corridors. A hall may be any large room."""
-SLENDER, MANY_DOORS = 2.5, 3
-"""A corridor is so many times as long as wide, or has so many doors [-]."""
+SLENDER, MANY_DOORS = 2.5, 3  # a corridor is so many times as long as wide, or has so many doors [-]
 LOW, HIGH = ITEMS.column("breadth").low or 0.0, ITEMS.column("breadth").high or math.inf
 """Sizes that a workbook takes [cm]."""
 LOWEST, HIGHEST = FLOORS.column("elevation").low or 0.0, FLOORS.column("elevation").high or math.inf

@@ -20,25 +20,18 @@ from assess.workbook.habits import name_some
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-AT_FLOOR = 0.03
-"""Height above the lowest point up to which a piece is taken to touch the floor [m]."""
-UPRIGHT = 0.999
-"""Least Z of the vertical axis of a piece that stands upright [-]: within 2.6 degrees."""
+AT_FLOOR = 0.03  # height above the lowest point up to which a piece is taken to touch the floor [m]
+UPRIGHT = 0.999  # least Z of the vertical axis of a piece that stands upright [-]: within 2.6 degrees
 CLEARLY_SMALLER = 0.97
 """Share of the rectangle in its own axes below which the smallest rectangle round a piece is taken instead [-]."""
-BASE = 0.02
-"""Height above the lowest point up to which a triangle is part of the base of a room [m]."""
-SMALLEST = 1e-6
-"""Area below which a triangle is a line [m2]."""
-JOINED = 1e-3
-"""Gap across which two parts of an outline are joined [m]."""
-NEAREST = 1e-3
-"""Edges of a base whose distances from the middle differ by less are as near [m]."""
+BASE = 0.02  # height above the lowest point up to which a triangle is part of the base of a room [m]
+SMALLEST = 1e-6  # area below which a triangle is a line [m2]
+JOINED = 1e-3  # gap across which two parts of an outline are joined [m]
+NEAREST = 1e-3  # edges of a base whose distances from the middle differ by less are as near [m]
 SLENDER, NARROW = 3.0, 2.5
 LONG, WIDE = 6.0, 5.0
 """A corridor is `SLENDER` times as long as wide and up to `NARROW` wide [m], or `LONG` times and up to `WIDE` [m]."""
-NARROWEST = 0.6
-"""Walls that are nearer than this to each other have no way between them [m]."""
+NARROWEST = 0.6  # walls that are nearer than this to each other have no way between them [m]
 NOTHING = Polygon()
 
 
@@ -302,8 +295,7 @@ class SpaceSearch:
 # ---------------------------------------------------------------- bodies that stand on each other
 
 
-TOUCHING = 0.02
-"""Gap up to which two bodies touch [m]."""
+TOUCHING = 0.02  # gap up to which two bodies touch [m]
 LEAST_COVER = 0.5
 """Share of the plan of the lower body from which the upper one belongs to it; a lamp on a table covers less [-]."""
 MOST_NAMED = 5

@@ -51,14 +51,11 @@ MOST_VALUES = 4_000_000
 MOST_OBJECTS, MOST_SURFACES = 5_000, 500
 """Objects, and elements of each other list, that are read; where walls cross, rooms are found in their number squared.
 """
-MOST_STORY = 99
-"""Largest number of a storey."""
+MOST_STORY = 99  # largest number of a storey
 FARTHEST, LARGEST = 10_000.0, 1_000.0
 """Distance of an element from the origin, and its size, beyond which something is wrong [m]."""
-RIGID = 0.02
-"""How far the axes of an element may be from perpendicular ones of length 1 [-]."""
-LONGEST_WORD = 60
-"""Characters that are kept of a category or label."""
+RIGID = 0.02  # how far the axes of an element may be from perpendicular ones of length 1 [-]
+LONGEST_WORD = 60  # characters that are kept of a category or label
 LISTS = ("objects", "walls", "doors", "windows", "openings", "floors")
 """Lists of elements of a CapturedRoom and a CapturedStructure."""
 _AGAIN = fill("Export the scan again.")
@@ -67,8 +64,7 @@ Label = tuple[str, int, FloatArray | None]
 _UPWARDS = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """Turns the axes of a file, Y upwards, into those of a plan, Z upwards."""
 SCHEMA = "RoomPlan"
-NEAR_STOREY = 0.5
-"""How far from a storey's floor a stair may end to lead to it [m]."""
+NEAR_STOREY = 0.5  # how far from a storey's floor a stair may end to lead to it [m]
 FIXED = ("sink", "toilet", "bathtub", "fireplace")
 """Categories that are fixed to the building."""
 STAIRS = "stairs"
@@ -77,10 +73,8 @@ BUILT_IN = ("oven", "dishwasher", "stove", "washerDryer", "refrigerator")
 FITTED = ("oven", "dishwasher")
 """Categories that are usually built in."""
 LOW = "low"
-WALL = 0.1
-"""Thickness with which walls are drawn: a scan knows their faces alone [m]."""
-JOINS = 0.15
-"""Gap at a corner across which two walls are joined to close a room [m]."""
+WALL = 0.1  # thickness with which walls are drawn: a scan knows their faces alone [m]
+JOINS = 0.15  # gap at a corner across which two walls are joined to close a room [m]
 
 IS_FIXED = fill("fixed to the building")
 IS_BUILT_IN = fill("built into a cabinet, which is imported")

@@ -60,8 +60,7 @@ MOST_ELEMENTS, DEEPEST = 100_000, 100
 """Elements of a home that are read, and elements inside each other."""
 MOST_PIECES, MOST_WALLS, MOST_LEVELS = 10_000, 1_000, 100
 """Pieces, walls or rooms, and levels that are read."""
-FARTHEST = 1e6
-"""Largest number of a length [cm]."""
+FARTHEST = 1e6  # largest number of a length [cm]
 CENTIMETRE = 0.01
 FURNITURE = ("pieceOfFurniture", "light", "shelfUnit", "doorOrWindow")
 

@@ -23,10 +23,8 @@ from assess.workbook.parse import Row
 Levels = Mapping[str, float | None]
 """Elevations of floors [m] by their names as names are compared; None where it is not known."""
 
-SAME_LEVEL = 0.05
-"""Difference up to which two floors are at one elevation [m]."""
-NEAR = 1.0
-"""Distance from a whole number of steps up to which pieces tell of another origin [m]."""
+SAME_LEVEL = 0.05  # difference up to which two floors are at one elevation [m]
+NEAR = 1.0  # distance from a whole number of steps up to which pieces tell of another origin [m]
 ALONG_X, ALONG_Y = ("x", "plan_left"), ("y", "plan_bottom")
 """Fields of all sheets along each axis [m]."""
 Pair = tuple[Mapping[str, Any], Row]

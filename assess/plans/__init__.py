@@ -8,12 +8,9 @@ from dataclasses import dataclass
 
 from assess.pictures import JPEG, PNG, PictureError, prepare_plan
 
-DOTS = 100.0
-"""Pixels to a metre of a plan that a report embeds."""
-LEAST, MOST = 600, 2400
-"""Pixels of its longer side: at least where the file has as many, and at most."""
-MOST_FILE = 10 * 2**20
-"""Bytes of a DXF drawing; an SVG and a picture may have as many."""
+DOTS = 100.0  # pixels to a metre of a plan that a report embeds
+LEAST, MOST = 600, 2400  # pixels of its longer side: at least where the file has as many, and at most
+MOST_FILE = 10 * 2**20  # bytes of a DXF drawing; an SVG and a picture may have as many
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,19 +17,15 @@ from assess.plans.linework import FARTHEST, MOST_ELEMENTS, MOST_RAW, describe_le
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
 
-DEEPEST = 16
-"""Blocks inside each other."""
-MOST_INSERTS = 20_000
-"""Blocks that are inserted: each takes a tenth of a millisecond, and blocks may hold blocks."""
+DEEPEST = 16  # blocks inside each other
+MOST_INSERTS = 20_000  # blocks that are inserted: each takes a tenth of a millisecond, and blocks may hold blocks
 MOST_TAGS = 1_000_000
 """Pairs of a group code and its value: a line has about a dozen. Each takes some 7 microseconds."""
-CHORDS = 8
-"""Chords of each curve."""
+CHORDS = 8  # chords of each curve
 DRAWN = frozenset({"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "SOLID", "TRACE", "3DFACE"})
 """Entities whose lines are drawn."""
 SILENT = frozenset({"POINT", "VIEWPORT", "ATTDEF", "ATTRIB", "SEQEND"})
-XREF = 4 | 8
-"""Flags of a block that is another file: an external reference, and one laid over."""
+XREF = 4 | 8  # flags of a block that is another file: an external reference, and one laid over
 
 
 def read_dxf(data: bytes) -> tuple[bytes, float, tuple[str, ...], float | None]:

@@ -18,12 +18,10 @@ MOST_RAW = 400_000
 """Points of its lines as they are read."""
 MOST_POINTS = 60_000
 """Points that are kept: about 700 kB in a report."""
-FINEST = 1 / 4000
-"""Share of a drawing's width below which two points of a line are the same."""
+FINEST = 1 / 4000  # share of a drawing's width below which two points of a line are the same
 NARROWEST, MOST_ASPECT = 1e-6, 1e3
 """Least width and height of a drawing in its own units, and the largest ratio of them [-]."""
-FARTHEST = 1e9
-"""Largest coordinate of a drawing, in its own units."""
+FARTHEST = 1e9  # largest coordinate of a drawing, in its own units
 
 
 def too_many() -> PictureError:

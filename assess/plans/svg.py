@@ -29,10 +29,8 @@ from assess.plans.linework import (
     too_many,
 )
 
-CHORDS = 8
-"""Chords of a curve."""
-DEEPEST = 100
-"""Elements inside each other."""
+CHORDS = 8  # chords of a curve
+DEEPEST = 100  # elements inside each other
 SILENT = frozenset({"title", "desc", "metadata", "defs", "style", "namedview", "symbol", "clipPath", "mask", "marker"})
 """Elements that are left out without a word: they show nothing by themselves."""
 UNITS: Mapping[str, float] = {
@@ -45,8 +43,7 @@ _LENGTH = re.compile(rf"({NUMBER})\s*+([a-z]*+)")
 _ENTRY = re.compile(rf"[\s,]*+({NUMBER})[\s,]*+")
 _STEP = re.compile(r"[\s,]*+(matrix|translate|scale|rotate|skewX|skewY)\s*+\(([^()]*+)\)[\s,]*+")
 _STYLE = re.compile(r"(?:^|;)\s*+(display|visibility|fill|stroke)\s*+:\s*+([^;!]*+)")
-_ROUND = 0.5522847498
-"""Distance of the control points of a quarter circle, over its radius."""
+_ROUND = 0.5522847498  # distance of the control points of a quarter circle, over its radius
 
 
 def unreadable() -> PictureError:
