@@ -26,13 +26,10 @@ REACH = 2000.0  # distance from the middle of the building up to which something
 FAR = fill("more than {reach:g} km from the middle of the building", reach=REACH / 1000)
 
 Point = tuple[float, float]
-Ring = tuple[Point, ...]
-"""Corners in order round it; the last is not the first again."""
-Area = tuple[Ring, ...]
-"""A polygon: its outer ring, then those of its holes."""
+Ring = tuple[Point, ...]  # corners in order round it; the last is not the first again
+Area = tuple[Ring, ...]  # a polygon: its outer ring, then those of its holes
 StairEnd = Literal["foot", "head"]
-SizesFrom = Literal["model", "scan"]
-"""Words of the column Sizes from of a workbook that such files can say."""
+SizesFrom = Literal["model", "scan"]  # words of the column Sizes from of a workbook that such files can say
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,9 +175,6 @@ class BuildingModel:
     shift: Point = (0.0, 0.0)
     warnings: tuple[Text, ...] = ()
     remarks: tuple[Text, ...] = ()
-
-
-# ---------------------------------------------------------------- models far from their origin
 
 
 def bring_near(model: BuildingModel) -> BuildingModel:

@@ -49,8 +49,7 @@ COLUMNS: Mapping[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 SIZES = ("NominalLength", "NominalWidth", "NominalHeight")
 MOVEABLE, FIXED = frozenset({"moveable", "movable", "mobile"}), frozenset({"fixed"})
 """AssetType as COBie 2.4 writes it, and as files have it."""
-NO_STOREYS = frozenset({"site", "roof", "foundation"})
-"""Categories of rows of the sheet Floor that are no storeys."""
+NO_STOREYS = frozenset({"site", "roof", "foundation"})  # categories of rows of the sheet Floor that are no storeys
 THIN, SLENDER = 0.10, 0.10
 """A piece thinner than this [m], or with less breadth to height [-], probably hangs on a wall or a window."""
 MOST_NAMED = 10
@@ -61,8 +60,7 @@ _CODE = re.compile(r"^[\w .-]*\d[\w .-]*\s*:\s*")
 """The number of a classification before the words of a category: ``11-16 27 00: Dormitory``."""
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d{1,3})?", re.ASCII)
 
-Row = Mapping[str, Any]
-"""Values by the column's name in COBie; what is blank or n/a is left out."""
+Row = Mapping[str, Any]  # values by the column's name in COBie; what is blank or n/a is left out
 Left = tuple[str, Text, bool]
 """A type whose components are left out: its name, the reason, and whether it may be furniture."""
 _Found = TypeVar("_Found")
@@ -237,9 +235,6 @@ def _by_name(sheet: _Sheet, read: Callable[[str, int, Row], _Found]) -> dict[str
         if name and key(name) not in found:
             found[key(name)] = read(name, number, row)
     return found
-
-
-# ---------------------------------------------------------------- floors
 
 
 class _Floor(NamedTuple):

@@ -104,17 +104,16 @@ def find_ground(model: BuildingModel) -> Storey | None:
 
 def find_kinds(model: BuildingModel, sides: Mapping[str, Sides]) -> dict[str, DoorKind]:
     """Return what each door is, by its key, from `find_sides`."""
-    ground = find_ground(model)
-
-    def classify(door: Door) -> DoorKind:
+    ground, kinds = find_ground(model), dict[str, DoorKind]()
+    for door in model.doors:
         one, other = sides[door.key]
         if one and other:
-            return "inside" if one != other else "same room"
-        if not (one or other):
-            return "no room"
-        return "exit" if ground is not None and door.storey == ground.key else "outside"
-
-    return {door.key: classify(door) for door in model.doors}
+            kinds[door.key] = "inside" if one != other else "same room"
+        elif one or other:
+            kinds[door.key] = "exit" if ground is not None and door.storey == ground.key else "outside"
+        else:
+            kinds[door.key] = "no room"
+    return kinds
 
 
 # ---------------------------------------------------------------- the plan of a storey

@@ -143,29 +143,18 @@ def _near(own: Mapping[str, Point], others: Mapping[str, Point]) -> Iterator[tup
         yield from ((name, names[one]) for one in np.argsort(far, kind="stable")[: NEAREST + 1].tolist())
 
 
-@dataclass(frozen=True, slots=True)
 class Axis:
-    """The middle line between two walls that face each other: its ends, and the distance of the walls [m]."""
+    """The middle line between two walls that face each other: its ends, and the distance of the walls [m].
 
-    start: Point
-    end: Point
-    width: float
+    Ways along it begin at an `inset` from its ends.
+    """
 
-    @property
-    def length(self) -> float:
-        """Its length [m]."""
-        return math.dist(self.start, self.end)
-
-    @property
-    def direction(self) -> Point:
-        """Its direction, of length 1."""
-        (x, y), (u, v) = self.start, self.end
-        return (u - x) / self.length, (v - y) / self.length
-
-    @property
-    def inset(self) -> float:
-        """How far from its ends ways along it begin [m]."""
-        return min(INSET, self.length / 3)
+    def __init__(self, start: Point, end: Point, width: float = 0.0) -> None:
+        self.start, self.end, self.width = start, end, width
+        self.length = math.dist(start, end)
+        self.inset = min(INSET, self.length / 3)
+        u, v = ((there - here) / self.length if self.length else 0.0 for here, there in zip(start, end, strict=True))
+        self.direction = u, v
 
     def find(self, point: Point) -> tuple[float, float]:
         """Return how far along the axis, and how far from it, a point is [m]."""
@@ -195,7 +184,7 @@ def _find_axes(room: Room) -> list[Axis]:
     inside = area.buffer(0.05)
     axes = []
     for one, other in ((one, other) for at, one in enumerate(walls) for other in walls[:at]):
-        wall, back = Axis(*one, 0.0), Axis(*other, 0.0)
+        wall, back = Axis(*one), Axis(*other)
         if not (wall.length > NARROWEST and back.length > NARROWEST):
             continue
         (x, y), (u, v), (p, q) = wall.start, wall.direction, back.direction
@@ -206,7 +195,7 @@ def _find_axes(room: Room) -> list[Axis]:
         low, high = max(0.0, min(places)), min(wall.length, max(places))
         if high - low >= OVERLAP * gap:
             start, end = ((a - gap / 2 * v, b + gap / 2 * u) for a, b in one)
-            middle = Axis(start, end, 0.0)
+            middle = Axis(start, end)
             axis = Axis(middle.point(low), middle.point(high), gap)
             if inside.covers(shapely.LineString([axis.start, axis.end])):
                 axes.append(axis)

@@ -51,8 +51,7 @@ BEHIND_WALL = 1.0
 """A piece of the next room that is so near to a segment, but behind a wall, would seem to stand in it [m]."""
 MOST_NAMED = 10
 SHORT = 40  # characters that are kept of a long name which a number tells apart
-NARROWEST = ROUTES.column("clear_width").low or 0.0
-"""Least clear width that a workbook takes [m]."""
+NARROWEST = ROUTES.column("clear_width").low or 0.0  # least clear width that a workbook takes [m]
 BESIDE = 1.5  # walls and columns up to this far to the left and to the right of a segment bound it [m]
 SLIVER = 1e-4  # area below which what stands beside a segment is an error of rounding [m2]
 SHORTEST = 0.02  # a part of a segment that is shorter than this has no sides [m]
@@ -175,9 +174,6 @@ def _find_steps(network: Network) -> dict[str, Step]:
             found[name] = tree[name]
             name = tree[name].end
     return found
-
-
-# ---------------------------------------------------------------- widths
 
 
 def measure_gap(plan: FloorPlan, space: str, ends: tuple[Point, Point], links: Iterable[Link]) -> float | None:

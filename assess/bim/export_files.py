@@ -186,7 +186,7 @@ def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, 
     if one.pfa_source:
         yield "PFASource", write_label(one.pfa_source)
     if routes := list_routes(found, [one.item]):
-        yield "MayBlockRoutes", _write_long_text(", ".join(routes))
+        yield "MayBlockRoutes", f"IFCTEXT({write_text(', '.join(routes))})"
     if one.importance:
         yield "Importance", write_label(_(one.importance))
     if one.item in found.works:
@@ -198,9 +198,9 @@ def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, 
             "FixingTensionCode": work.tension_code_kn, "BaseShear": work.shear_kn,
         }  # fmt: skip
         yield from ((f"{key}_kN", write_real(force)) for key, force in forces.items() if force is not None)
-    yield "Scenario", _write_long_text(say_scenario(run))
+    yield "Scenario", f"IFCTEXT({write_text(say_scenario(run))})"
     yield "AssessedBy", write_label(say_program(run))
-    yield "Report", _write_long_text(say_report(run))
+    yield "Report", f"IFCTEXT({write_text(say_report(run))})"
 
 
 def make_global_id(kind: str, *keys: str) -> str:
@@ -228,10 +228,6 @@ def write_label(text: str) -> str:
     """Return an IfcLabel, cut where it is too long."""
     text = plain_line(text)
     return f"IFCLABEL({write_text(text if len(text) <= LONGEST_LABEL else f'{text[: LONGEST_LABEL - 1]}…')})"
-
-
-def _write_long_text(text: str) -> str:
-    return f"IFCTEXT({write_text(text)})"
 
 
 def write_real(value: float) -> str:

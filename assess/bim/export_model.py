@@ -10,8 +10,7 @@ from typing import Any
 
 from assess.bim.ifc_model import find_unit, join_parts, read_with
 
-PROPERTY_SET = "Assess_OverturningRisk"
-"""Name of the set; the prefix Pset_ is that of buildingSMART."""
+PROPERTY_SET = "Assess_OverturningRisk"  # name of the set; the prefix Pset_ is that of buildingSMART
 NOT_FURNITURE = (
     "IfcWall", "IfcCurtainWall", "IfcSlab", "IfcRoof", "IfcCovering", "IfcDoor", "IfcWindow", "IfcColumn", "IfcBeam",
     "IfcStair", "IfcStairFlight", "IfcRamp", "IfcRampFlight", "IfcRailing", "IfcFeatureElement",
@@ -90,24 +89,24 @@ def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[s
             unit = find_unit(model, name)
             boxes = _find_boxes(model, [found[key] for key in placed if key in found], unit)
             rooms = list(_find_boxes(model, model.by_type("IfcSpace"), unit).values()) if boxes else []
+            rooms.sort(key=lambda box: math.prod(high - low for low, high in zip(*box, strict=True)))
             doors = list(_list_doors(model, unit))
         elements = []
         for key, one in found.items():
-            box, owner, around = boxes.get(one.id()), one.OwnerHistory, list[Box]()
-            if box is not None:
-                at = find_middle(box)
-                around = [
-                    room
-                    for room in rooms
-                    if all(low <= x <= high for low, x, high in zip(room[0], at, room[1], strict=True))
-                ]
+            box, owner = boxes.get(one.id()), one.OwnerHistory
+            around = (
+                room
+                for room in rooms
+                if box
+                and all(low <= x <= high for low, x, high in zip(room[0], find_middle(box), room[1], strict=True))
+            )
             if not owner and model.schema == "IFC2X3":  # which demands one
                 owner = next(iter(model.by_type("IfcOwnerHistory")), None)
             elements.append(
                 ModelElement(
                     key=key, name=str(one.Name or ""), number=one.id(), owner=owner.id() if owner else 0, box=box,
                     has_set=PROPERTY_SET in get_psets(one, psets_only=True, should_inherit=False),
-                    room=min(around, key=_find_volume, default=None),
+                    room=next(around, None),  # the smallest
                 )
             )  # fmt: skip
         projects = model.by_type("IfcProject")
@@ -120,10 +119,6 @@ def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[s
         )
 
     return read_with(path, name, understand)
-
-
-def _find_volume(box: Box) -> float:
-    return math.prod(high - low for low, high in zip(*box, strict=True))
 
 
 def find_middle(box: Box) -> Place:

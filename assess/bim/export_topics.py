@@ -52,8 +52,7 @@ from assess.risk import RiskClass
 from assess.schedule_results import ScheduleRow
 from assess.text import plain_text
 
-MOST = 200
-"""Topics in a file; the rest are counted."""
+MOST = 200  # topics in a file; the rest are counted
 TYPE, STATUS = "Issue", "Open"
 PRIORITIES = {
     RiskClass.VERY_HIGH: "Critical", RiskClass.HIGH: "Major", RiskClass.MEDIUM: "Normal", RiskClass.LOW: "Minor",

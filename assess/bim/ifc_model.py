@@ -54,15 +54,12 @@ from assess.i18n import Text, fill, nfill
 from assess.resources import open_input
 from assess.workbook.values import ERRORS, read_text
 
-Element = Any
-"""An entity of ifcopenshell."""
-MOST_BYTES = 512 * 2**20
-"""Size of a model that is read [bytes]."""
+Element = Any  # an entity of ifcopenshell
+MOST_BYTES = 512 * 2**20  # size of a model that is read [bytes]
 FIRST, LAST = b"ISO-10303-21;", b"END-ISO-10303-21;"
 _LOOKED_AT = 65536
 _SCHEMA = re.compile(rb"FILE_SCHEMA\s*\(\s*\(\s*'([^']{1,80})'", re.IGNORECASE)
-SCHEMAS = ("IFC2X3", "IFC4", "IFC4X3")
-"""Schemas that are read, with their corrections such as IFC4X3_ADD2."""
+SCHEMAS = ("IFC2X3", "IFC4", "IFC4X3")  # schemas that are read, with their corrections such as IFC4X3_ADD2
 _NO_MODEL = fill("it does not begin as an IFC file (ISO-10303-21) does. Export the building as IFC (.ifc, STEP)")
 _DEEPEST = 20  # levels of parts and containers that are followed: a model may hold a loop
 THREADS = 1
@@ -100,17 +97,13 @@ FITTED = (
     "kueche", "cucina", "incasso",
 )  # fmt: skip
 """Words in names of fitted furniture, which is usually fixed."""
-MOST_PIECES = 20_000
-"""Pieces of a model that are read."""
+MOST_PIECES = 20_000  # pieces of a model that are read
 NO_SHAPE = fill("no geometry")
 NO_PIECE = fill("its class is not furniture; it can be imported by the name of its class")
 _FEWEST, _NEARLY_ALL, _ALIKE = 3, 0.8, 0.03
 """Pieces, their share [-] and their heights [m] by which furniture tells the floor of its storey."""
 _HUNG = (0.6, 2.4)  # heights at which furniture hangs on walls [m]
 _NEAR_FLOOR = 0.3  # how far below the floor of a room a piece may begin to stand in it [m]
-
-
-# ---------------------------------------------------------------- the file
 
 
 def is_model(start: bytes) -> bool:
@@ -573,8 +566,7 @@ def _find_step(points: FloatArray, level: float) -> Point:
     return float(x), float(y)
 
 
-Plans = dict[str, tuple[Area, ...]]
-"""Areas by the key of their storey."""
+Plans = dict[str, tuple[Area, ...]]  # areas by the key of their storey
 
 
 def _cut_walls(model: Any, storeys: Sequence[Storey]) -> tuple[Plans, Plans]:

@@ -20,14 +20,12 @@ LONGEST_CELL = 32_767  # characters that a spreadsheet takes in a cell
 _LONG = frozenset(
     {"notes", "source", *(column.name for sheet in SHEETS for column in sheet.columns if column.kind == "outline")}
 )
-MOST_NAMED, FEW_NAMED = 500, 5
-"""Types that a text names, of what may be furniture, and of what is none."""
+MOST_NAMED, FEW_NAMED = 500, 5  # types that a text names, of what may be furniture, and of what is none
 MOST_LIVE = 5000
 """Rows up to which the results of the live columns are stored; a spreadsheet program works them out in any case."""
 NEAR_GROUND = (-1.0, 3.0)  # elevations [m] of a lowest floor that lies at the ground, as far as can be known
 LOWEST_ROOF = 2.0  # least height of a building that a workbook takes [m]
-ENDING = "-import.txt"
-"""How the name of the file that records an import ends; it begins with that of the model."""
+ENDING = "-import.txt"  # how the name of the file that records an import ends; it begins with that of the model
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -31,8 +31,7 @@ MEMORY = 4 * 2**30  # memory that it may use [bytes]
 PATIENCE = 4
 _ASKED_EVERY = 0.05
 PREFIX = "assess-model-"
-ORDER, ANSWER = "order", "answer"
-"""Names of the files in which a process gets its work and leaves what came out."""
+ORDER, ANSWER = "order", "answer"  # names of the files in which a process gets its work and leaves what came out
 OUT_OF_MEMORY, TOO_LONG = 3, 4  # status of a process whose memory ran out, and of one that the clock stopped
 
 _Found = TypeVar("_Found")
@@ -104,7 +103,16 @@ def main() -> None:
     folder = Path(sys.argv[1])
     threading.Thread(target=end_with_parent, daemon=True).start()
     module, function, args, named, seconds, memory = pickle.loads((folder / ORDER).read_bytes())  # noqa: S301
-    _limit(seconds, memory)
+    try:
+        import resource
+    except ImportError:  # Windows: the process that started this one looks at the clock
+        pass
+    else:
+        for kind, most in ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_AS, memory), (resource.RLIMIT_CORE, 0)):
+            _, hard = resource.getrlimit(kind)
+            allowed = most if hard == resource.RLIM_INFINITY else min(most, hard)
+            with suppress(OSError, ValueError):  # macOS does not limit addresses
+                resource.setrlimit(kind, (allowed, hard))
     try:
         work = getattr(importlib.import_module(module), function)
         answer = (False, work(*args, **named))
@@ -116,18 +124,6 @@ def main() -> None:
     part.write_bytes(pickle.dumps(answer))
     part.replace(folder / ANSWER)
     os._exit(0)  # without what libraries do at the end
-
-
-def _limit(seconds: int, memory: int) -> None:
-    try:
-        import resource
-    except ImportError:  # Windows: the process that started this one looks at the clock
-        return
-    for kind, most in ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_AS, memory), (resource.RLIMIT_CORE, 0)):
-        _, hard = resource.getrlimit(kind)
-        allowed = most if hard == resource.RLIM_INFINITY else min(most, hard)
-        with suppress(OSError, ValueError):  # macOS does not limit addresses
-            resource.setrlimit(kind, (allowed, hard))
 
 
 if __name__ == "__main__":

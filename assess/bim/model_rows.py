@@ -38,8 +38,7 @@ from assess.workbook.schema import BUILDING, FLOORS, ITEMS
 from assess.workbook.values import MOST_CORNERS, parse_outline
 
 Row = dict[str, Any]
-Drafts = Literal["none", "draft"]
-"""Whether evacuation routes are drafted."""
+Drafts = Literal["none", "draft"]  # whether evacuation routes are drafted
 CENTIMETRES = 100.0
 SAME = 0.005  # difference up to which two sizes are the same [m]
 ALONG = 1.0  # angle between an edge and a side of a piece up to which the edge is along it [deg]
@@ -57,8 +56,7 @@ LOW, HIGH = ITEMS.column("breadth").low or 0.0, ITEMS.column("breadth").high or 
 """Sizes that a workbook takes [cm]."""
 LOWEST, HIGHEST = FLOORS.column("elevation").low or 0.0, FLOORS.column("elevation").high or math.inf
 """Elevations that a workbook takes [m]."""
-TALLEST = BUILDING.column("height").high or math.inf
-"""Height of a building that a workbook takes [m]."""
+TALLEST = BUILDING.column("height").high or math.inf  # height of a building that a workbook takes [m]
 BESIDE_BASE = fill("the middle of its body is not above its base in the model")
 FITTED = fill("fitted furniture, usually fixed: look at it, and fill in Anchored")
 
@@ -170,8 +168,6 @@ class _Building:
             named.append((f"{stair.key} {stair.end}", text))
         return dict(zip((key for key, _ in named), name_apart(name for _, name in named), strict=True))
 
-    # ------------------------------------------------------------ rows
-
     def list_items(self, types: Mapping[Any, str]) -> Iterator[Row]:
         """Yield the rows of Items, named as ``A203-02``: the room, or else the floor, and a number in it."""
         numbers: Counter[str] = Counter()
@@ -222,8 +218,6 @@ class _Building:
             row = {"place": self.places[name], "floor": self.floors[end.storey], "kind": what}
             yield row | {"x": round(end.x, 3), "y": round(end.y, 3)}
 
-    # ------------------------------------------------------------ what is to be checked
-
     def warn(self) -> Iterator[Text]:
         """Yield what may distort results: odd elevations, and supports off the middle."""
         known = [(self.floors[one.key], one.elevation) for one in self.storeys if LOWEST <= one.elevation <= HIGHEST]
@@ -269,9 +263,6 @@ class _Building:
         if empty:
             names = ", ".join(empty[:20])
             yield fill("Storeys without furniture, rooms and doors were left out: {names}.", names=names)
-
-
-# ---------------------------------------------------------------- sizes
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,7 +95,9 @@ def find_box(shape: Shape) -> Box:
         centre = own * (p.max() + p.min()) / 2 + other * (q.max() + q.min()) / 2
         box = _order(centre, own, float(np.ptp(p)), float(np.ptp(q)))
     smallest = find_rectangle(plan)
-    if smallest is not None and (box is None or smallest.area < CLEARLY_SMALLER * box.area):
+    if smallest is not None and (
+        box is None or smallest.short * smallest.long < CLEARLY_SMALLER * (box.short * box.long)
+    ):
         box = smallest
     if box is None:  # a line: no breadth
         x, y = plan.mean(axis=0)
@@ -127,11 +129,6 @@ class Rectangle:
     short: float
     long: float
     angle_deg: float
-
-    @property
-    def area(self) -> float:
-        """In m2."""
-        return self.short * self.long
 
 
 def _order(centre: FloatArray, x: FloatArray, along: float, across: float) -> Rectangle:
@@ -256,9 +253,6 @@ def merge(polygons: Iterable[Polygon]) -> tuple[Area, ...]:
     return tuple(to_area(one) for one in list_polygons(union.simplify(JOINED / 2)) if one.area > SMALLEST)
 
 
-# ---------------------------------------------------------------- rooms
-
-
 def find_width(area: shapely.geometry.base.BaseGeometry) -> float:
     """Return the width of a long narrow area [m], that of the rectangle of its area and perimeter; 0 for others."""
     half, size = area.length / 2, area.area
@@ -300,8 +294,7 @@ LEAST_COVER = 0.5
 """Share of the plan of the lower body from which the upper one belongs to it; a lamp on a table covers less [-]."""
 MOST_NAMED = 5
 
-Bounds = FloatArray
-"""Least and largest X, Y and Z of bodies, (n, 6): x, y, z, X, Y, Z [m]."""
+Bounds = FloatArray  # least and largest X, Y and Z of bodies, (n, 6): x, y, z, X, Y, Z [m]
 
 
 def find_pairs(upper: Bounds, lower: Bounds, *, beside: bool = False) -> list[tuple[int, int]]:

@@ -44,8 +44,7 @@ from assess.bim.plan_shapes import UPRIGHT, FloatArray, SpaceSearch, find_valid,
 from assess.errors import ModelError
 from assess.i18n import Text, fill, gettext, nfill
 
-MOST_BYTES = 64 * 2**20
-"""Size of a file that is read [bytes]."""
+MOST_BYTES = 64 * 2**20  # size of a file that is read [bytes]
 MOST_VALUES = 4_000_000
 """Values that it may hold, by its commas and brackets: they bound the memory that reading takes."""
 MOST_OBJECTS, MOST_SURFACES = 5_000, 500
@@ -65,13 +64,11 @@ _UPWARDS = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """Turns the axes of a file, Y upwards, into those of a plan, Z upwards."""
 SCHEMA = "RoomPlan"
 NEAR_STOREY = 0.5  # how far from a storey's floor a stair may end to lead to it [m]
-FIXED = ("sink", "toilet", "bathtub", "fireplace")
-"""Categories that are fixed to the building."""
+FIXED = ("sink", "toilet", "bathtub", "fireplace")  # categories that are fixed to the building
 STAIRS = "stairs"
 BUILT_IN = ("oven", "dishwasher", "stove", "washerDryer", "refrigerator")
 """Categories that are built in where they belong to an object of the category storage."""
-FITTED = ("oven", "dishwasher")
-"""Categories that are usually built in."""
+FITTED = ("oven", "dishwasher")  # categories that are usually built in
 LOW = "low"
 WALL = 0.1  # thickness with which walls are drawn: a scan knows their faces alone [m]
 JOINS = 0.15  # gap at a corner across which two walls are joined to close a room [m]

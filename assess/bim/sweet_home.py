@@ -56,10 +56,8 @@ SCHEMA = "Sweet Home 3D"
 HOME, OLD_HOME = "Home.xml", "Home"
 MOST_BYTES, MOST_HOME = 256 * 2**20, 32 * 2**20
 """Size of a file, and of its home unpacked, that is read [bytes]; the rest of a file are pictures and shapes."""
-MOST_ELEMENTS, DEEPEST = 100_000, 100
-"""Elements of a home that are read, and elements inside each other."""
-MOST_PIECES, MOST_WALLS, MOST_LEVELS = 10_000, 1_000, 100
-"""Pieces, walls or rooms, and levels that are read."""
+MOST_ELEMENTS, DEEPEST = 100_000, 100  # elements of a home that are read, and elements inside each other
+MOST_PIECES, MOST_WALLS, MOST_LEVELS = 10_000, 1_000, 100  # pieces, walls or rooms, and levels that are read
 FARTHEST = 1e6  # largest number of a length [cm]
 CENTIMETRE = 0.01
 FURNITURE = ("pieceOfFurniture", "light", "shelfUnit", "doorOrWindow")
@@ -126,9 +124,6 @@ def _damaged(name: str) -> ModelError:
     )  # fmt: skip
 
 
-# ---------------------------------------------------------------- the home as it stands in the file
-
-
 class _Home:
     """The elements of a Home.xml; ModelError if it is damaged, is no home or holds too many."""
 
@@ -192,8 +187,6 @@ class _Home:
                  name=self.name, most=most, what=what)
         )  # fmt: skip
 
-    # ------------------------------------------------------------ values
-
     def number(self, element: _Element, name: str, otherwise: float | None = None) -> float:
         text = element.values.get(name)
         if text is None and otherwise is not None:
@@ -213,8 +206,6 @@ class _Home:
         """Return a length of an element [m]."""
         return CENTIMETRE * self.number(element, name, otherwise)
 
-    # ------------------------------------------------------------ the model
-
     def build(self) -> BuildingModel:
         levels = ((one, self.metres(one, "elevation")) for one in self.levels)
         found = [Storey(one.values.get("id", one.place), one.name or one.place, z, z) for one, z in levels]
@@ -230,7 +221,10 @@ class _Home:
                 spaces.append(Space(key.strip(), storey.key, name, "", to_area(polygon), storey.level, storey.level))
         boxes = _join_groups([
             _Box(
-                element=one, storey=by_key.get(one.values.get("level", ""), storeys[0]).key, name=one.name or one.tag,
+                element=one, key=one.values.get("id", ""), name=one.name or one.tag,
+                storey=by_key.get(one.values.get("level", ""), storeys[0]).key,
+                is_hidden=one.values.get("visible") == "false", is_stair="staircaseCutOutShape" in one.values,
+                is_opening=one.tag == "doorOrWindow" or one.values.get("doorOrWindow") == "true",
                 x=self.metres(one, "x"), y=-self.metres(one, "y"),
                 angle=math.remainder(-self.number(one, "angle", 0.0), math.tau),  # clockwise in the file
                 width=self.metres(one, "width"), depth=self.metres(one, "depth"), height=self.metres(one, "height"),
@@ -294,6 +288,7 @@ class _Box:
     """
 
     element: _Element
+    key: str
     storey: str
     name: str
     x: float
@@ -303,30 +298,16 @@ class _Box:
     depth: float
     height: float
     bottom: float
+    is_hidden: bool
+    is_opening: bool
+    is_stair: bool
     is_tilted: bool
     feet: tuple[float, float] | None = None
-
-    @property
-    def key(self) -> str:
-        """Its identifier in the file, "" without one."""
-        return self.element.values.get("id", "")
 
     @property
     def own_key(self) -> str:
         """Its identifier and its place in the file, which tells it from others."""
         return f"{self.key} {self.element.place}".strip()
-
-    @property
-    def is_hidden(self) -> bool:
-        return self.element.values.get("visible") == "false"
-
-    @property
-    def is_opening(self) -> bool:
-        return self.element.tag == "doorOrWindow" or self.element.values.get("doorOrWindow") == "true"
-
-    @property
-    def is_stair(self) -> bool:
-        return "staircaseCutOutShape" in self.element.values
 
     def plan(self, least: float = 0.0) -> Polygon:
         """Return its plan, a little deeper than `least` and than itself where that is not 0."""

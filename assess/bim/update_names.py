@@ -25,10 +25,8 @@ Levels = Mapping[str, float | None]
 
 SAME_LEVEL = 0.05  # difference up to which two floors are at one elevation [m]
 NEAR = 1.0  # distance from a whole number of steps up to which pieces tell of another origin [m]
-ALONG_X, ALONG_Y = ("x", "plan_left"), ("y", "plan_bottom")
-"""Fields of all sheets along each axis [m]."""
-Pair = tuple[Mapping[str, Any], Row]
-"""A row of the model, and that of the workbook that was imported from it."""
+ALONG_X, ALONG_Y = ("x", "plan_left"), ("y", "plan_bottom")  # fields of all sheets along each axis [m]
+Pair = tuple[Mapping[str, Any], Row]  # a row of the model, and that of the workbook that was imported from it
 _NUMBER = re.compile(r"(?: \(\d+\))+$")
 
 

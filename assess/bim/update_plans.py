@@ -17,13 +17,11 @@ from assess.i18n import fill
 from assess.workbook.names import key
 from assess.workbook.parse import Row
 
-PLAN = ("plan", "plan_left", "plan_bottom", "plan_width", "plan_turn")
-"""Fields of Floors that tell of a plan."""
+PLAN = ("plan", "plan_left", "plan_bottom", "plan_width", "plan_turn")  # fields of Floors that tell of a plan
 _NUMBER = re.compile(r"-\d+(?=\.svg$)", re.IGNORECASE)
 """What tells a plan from another file of its name: the 2 of ``a-1-2.svg``."""
 
-Files = Path | Mapping[str, bytes] | None
-"""The folder of a workbook, or the files beside it."""
+Files = Path | Mapping[str, bytes] | None  # the folder of a workbook, or the files beside it
 
 
 class PlanUpdate:

@@ -30,12 +30,9 @@ if sys.platform == "win32":
 else:
     import fcntl
 
-FILE = ".assess-lock"
-"""The file that is locked where a folder cannot be."""
-PREFIX = ".assess-writing-"
-"""How the names of stages begin."""
-NEW, OLD = "new", "old"
-"""Folders of a stage: what is to be delivered, and what it replaces."""
+FILE = ".assess-lock"  # the file that is locked where a folder cannot be
+PREFIX = ".assess-writing-"  # how the names of stages begin
+NEW, OLD = "new", "old"  # folders of a stage: what is to be delivered, and what it replaces
 PATIENCE = 20.0  # time that another run is waited for [s]; it holds a lock for less than a second
 _ASKED_EVERY = 0.05
 _OLD = 24 * 3600.0  # age [s] of a folder that no process writes to any more, for file systems without locks

@@ -9,15 +9,11 @@ from assess.pictures import PictureError
 
 FloatArray = NDArray[np.float64]
 Line = Sequence[tuple[float, float]] | FloatArray
-Box = tuple[float, float, float, float]
-"""Left, low, right and high end."""
+Box = tuple[float, float, float, float]  # left, low, right and high end
 
-MOST_ELEMENTS = 100_000
-"""Elements of a drawing that are looked at."""
-MOST_RAW = 400_000
-"""Points of its lines as they are read."""
-MOST_POINTS = 60_000
-"""Points that are kept: about 700 kB in a report."""
+MOST_ELEMENTS = 100_000  # elements of a drawing that are looked at
+MOST_RAW = 400_000  # points of its lines as they are read
+MOST_POINTS = 60_000  # points that are kept: about 700 kB in a report
 FINEST = 1 / 4000  # share of a drawing's width below which two points of a line are the same
 NARROWEST, MOST_ASPECT = 1e-6, 1e3
 """Least width and height of a drawing in its own units, and the largest ratio of them [-]."""

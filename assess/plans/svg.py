@@ -224,8 +224,7 @@ def _read_transform(text: str) -> FloatArray:
 
 # ---------------------------------------------------------------- shapes
 
-Lines = list[list[complex]]
-"""Points of each line, X as the real and Y as the imaginary part."""
+Lines = list[list[complex]]  # points of each line, X as the real and Y as the imaginary part
 SHAPES: Mapping[str, tuple[str, ...]] = {
     "path": (), "polyline": (), "polygon": (), "line": ("x1", "y1", "x2", "y2"), "rect": ("x", "y", "width", "height"),
     "circle": ("cx", "cy", "r"), "ellipse": ("cx", "cy", "rx", "ry"),
