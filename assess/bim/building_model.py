@@ -28,8 +28,6 @@ FAR = fill("more than {reach:g} km from the middle of the building", reach=REACH
 Point = tuple[float, float]
 Ring = tuple[Point, ...]  # corners in order round it; the last is not the first again
 Area = tuple[Ring, ...]  # a polygon: its outer ring, then those of its holes
-StairEnd = Literal["foot", "head"]
-SizesFrom = Literal["model", "scan"]  # words of the column Sizes from of a workbook that such files can say
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +79,7 @@ class Stair:
     key: str
     storey: str
     name: str
-    end: StairEnd
+    end: Literal["foot", "head"]
     x: float
     y: float
 
@@ -158,7 +156,7 @@ class BuildingModel:
 
     source: str
     schema: str
-    sizes_from: SizesFrom = "model"
+    sizes_from: Literal["model", "scan"] = "model"  # words of the column Sizes from
     name: str = ""
     address: str = ""
     storeys: tuple[Storey, ...] = ()

@@ -154,15 +154,12 @@ def _list_remarks(facilities: int, used: Mapping[str, Mapping[str, Any]], in_sev
 
 @dataclass(frozen=True, slots=True)
 class _Sheet:
-    """One sheet: its name in the file, the letters of its columns by their names in COBie, and its rows by number."""
-
     name: str
     letters: Mapping[str, str]
     rows: tuple[tuple[int, Row], ...]
 
 
 def _read_sheets(source: Path | bytes, name: str, progress: Progress) -> dict[str, _Sheet]:
-    """Return the sheets of `COLUMNS` by their names in COBie."""
     data = source if isinstance(source, bytes) else read_file(source)
     try:
         with Book(data, name, progress) as book:
@@ -323,7 +320,6 @@ def _find_unit(facility: _Sheet, types: _Sheet) -> str:
 
 
 def _read_type(name: str, row: Row, unit: str, origin: Text) -> dict[str, Any] | Left:
-    """Return a type as its row of the Catalogue, or why its components are left out."""
     asset = say(row.get("AssetType"))
     if asset.casefold() in FIXED:
         return name, fill("AssetType is Fixed"), False
@@ -354,7 +350,6 @@ def _read_length(column: Column, label: str, value: object, unit: str) -> float:
 
 
 def _read_number(value: object) -> float | None:
-    """Return the number of a cell, also where it is stored as a text; None where it is none."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return float(value)
     text = value.strip() if isinstance(value, str) else ""

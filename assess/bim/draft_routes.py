@@ -263,8 +263,6 @@ def draft_routes(
 
 @dataclass(slots=True)
 class _Sheet:
-    """Rows of a draft in the making; `places` are those that the segments add."""
-
     model: BuildingModel
     network: Network
     steps: Mapping[str, Step]
@@ -275,7 +273,6 @@ class _Sheet:
     _openings: dict[str, list[Link]] = field(default_factory=dict)
 
     def list_routes(self) -> Iterator[dict[str, Any]]:
-        """Yield the rows of Routes: by storey, and from the farthest room to the end of each route."""
         self._taken = {key(name) for name in self.names.values()}
         for opening in self.network.openings:
             for space in opening.spaces:

@@ -589,7 +589,6 @@ def _cut_walls(model: Any, storeys: Sequence[Storey]) -> tuple[Plans, Plans]:
 def _find_pieces(
     model: Any, storeys: Sequence[Storey], spaces: Sequence[Space], also: Sequence[str]
 ) -> tuple[list[Piece], tuple[Storey, ...], tuple[Skipped, ...], list[Text]]:
-    """Return the pieces, the storeys with the levels of their floors, what was left out, and warnings."""
     import ifcopenshell
     from ifcopenshell.util.element import get_type
 

@@ -219,7 +219,6 @@ class _Building:
             yield row | {"x": round(end.x, 3), "y": round(end.y, 3)}
 
     def warn(self) -> Iterator[Text]:
-        """Yield what may distort results: odd elevations, and supports off the middle."""
         known = [(self.floors[one.key], one.elevation) for one in self.storeys if LOWEST <= one.elevation <= HIGHEST]
         yield from note_datum(known)
         odd = [name for name in self.floors.values() if name not in dict(known)]

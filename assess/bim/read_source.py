@@ -62,7 +62,6 @@ def read_source(
 
 
 def _choose(path: Path, name: str, start: bytes) -> Reader | None:
-    """Return the reader of a model, None for a COBie file."""
     if start.startswith(_ZIP):
         try:
             with zipfile.ZipFile(path) as archive:

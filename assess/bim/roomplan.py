@@ -346,10 +346,8 @@ def read_roomplan(data: bytes, name: str) -> BuildingModel:
 
 
 class _Scan:
-    """All that is read of a scan, turned so that the walls run along X and Y.
-
-    The direction of the walls is the mean of all, by their lengths, within 45 degrees of X. `levels` are those of the
-    storeys [m], from the lowest: where their floors lie, else where their walls begin, else their objects.
+    """A scan, turned so that its walls, by their lengths, run along X and Y. `levels` are those of the storeys [m],
+    from the lowest: where their floors lie, else where their walls begin, else their objects.
     """
 
     def __init__(self, read: _Reader) -> None:
@@ -410,7 +408,6 @@ class _Scan:
         return pieces, unsure, count_skipped(skipped)
 
     def list_doors(self) -> Iterator[Door]:
-        """Yield the doors, and the openings through which people walk, each identifier once."""
         taken: set[str] = set()
         named = ((gettext("Door"), self.doors), (gettext("Opening"), self.openings))
         for name, one in ((name, one) for name, several in named for one in several):
@@ -424,7 +421,6 @@ class _Scan:
                 )  # fmt: skip
 
     def list_stairs(self) -> Iterator[Stair]:
-        """Yield the ends of the stairs."""
         for one in (one for one in self.objects if one.kind == STAIRS):
             x, y, top = float(one.origin[0]), float(one.origin[1]), one.bottom + one.sizes[1]
             yield Stair(one.key, str(one.story), _spell(one.kind), "foot", x, y)

@@ -82,7 +82,6 @@ class _Element:
 
     @property
     def name(self) -> str:
-        """Its name; "" without one."""
         return " ".join(self.values.get("name", "").split())
 
 
@@ -125,8 +124,6 @@ def _damaged(name: str) -> ModelError:
 
 
 class _Home:
-    """The elements of a Home.xml; ModelError if it is damaged, is no home or holds too many."""
-
     def __init__(self, name: str, data: bytes) -> None:
         self.name = name
         self.levels: list[_Element] = []
@@ -203,7 +200,6 @@ class _Home:
         return found
 
     def metres(self, element: _Element, name: str, otherwise: float | None = None) -> float:
-        """Return a length of an element [m]."""
         return CENTIMETRE * self.number(element, name, otherwise)
 
     def build(self) -> BuildingModel:
@@ -282,10 +278,7 @@ class _Home:
 
 @dataclass(frozen=True, slots=True)
 class _Box:
-    """A piece, door or window: its centre, its sides along `angle` [rad] and across it, and its height [m].
-
-    `feet` are the sides of what stands on the floor, where those of the body are others.
-    """
+    """A piece, door or window: its sides [m] along `angle` [rad] and across it; `feet`: of what stands on the floor."""
 
     element: _Element
     key: str
@@ -306,7 +299,6 @@ class _Box:
 
     @property
     def own_key(self) -> str:
-        """Its identifier and its place in the file, which tells it from others."""
         return f"{self.key} {self.element.place}".strip()
 
     def plan(self, least: float = 0.0) -> Polygon:
@@ -316,7 +308,6 @@ class _Box:
         return place_at((self.x, self.y), along, ((-u, -v), (u, -v), (u, v), (-u, v)))
 
     def why_left_out(self) -> Text | None:
-        """Return why it is not taken as a piece."""
         if self.is_hidden:
             return IS_HIDDEN
         if self.is_stair:

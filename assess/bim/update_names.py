@@ -64,7 +64,6 @@ def match_floors(model: Levels, workbook: Levels, pairs: Iterable[tuple[str, str
 
 
 def _find_majority(counter: Counter[str]) -> str:
-    """Return what more than half agree on, "" where there is nothing such."""
     best, number = max(counter.items(), key=lambda one: one[1], default=("", 0))
     return best if 2 * number > counter.total() else ""
 

@@ -59,7 +59,16 @@ class FolderLock:
                 handle = self._open(path)
             except OSError:
                 continue
-            is_held = _lock(handle)
+            try:
+                if sys.platform == "win32":
+                    msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
+                else:
+                    fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                is_held: bool | None = True
+            except (BlockingIOError, PermissionError):
+                is_held = False
+            except OSError:  # it cannot be locked here
+                is_held = None
             with suppress(OSError):
                 if is_held and os.path.samestat(os.fstat(handle), path.stat()):
                     self._handle, self._is_file = handle, path == self._file
@@ -84,20 +93,6 @@ class FolderLock:
         if self._is_file and sys.platform == "win32":
             with suppress(OSError):
                 self._file.unlink()
-
-
-def _lock(handle: int) -> bool | None:
-    """Lock an open file or folder; False: another one holds it, None: it cannot be locked here."""
-    try:
-        if sys.platform == "win32":
-            msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
-        else:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except (BlockingIOError, PermissionError):
-        return False
-    except OSError:
-        return None
-    return True
 
 
 @contextmanager

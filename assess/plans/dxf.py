@@ -86,8 +86,6 @@ def _open(data: bytes) -> "Document":
 
 
 class _Reader:
-    """Takes in entities; `lines` are in drawing units."""
-
     def __init__(self, document: "Document") -> None:
         self.blocks = document.blocks
         self.hidden = {layer.dxf.name.lower() for layer in document.layers if layer.is_off() or layer.is_frozen()}

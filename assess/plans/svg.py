@@ -72,8 +72,6 @@ def read_svg(data: bytes) -> tuple[bytes, float, tuple[str, ...]]:
 
 
 class _SvgReader:
-    """Takes in the elements of an SVG; `lines` are in the units of its root."""
-
     def __init__(self) -> None:
         self.parser = expat.ParserCreate()
         self.parser.StartElementHandler, self.parser.EndElementHandler = self.enter, self.leave
@@ -139,7 +137,6 @@ class _SvgReader:
 
 
 def _read_frame(attributes: Mapping[str, str]) -> Box | None:
-    """Return the viewBox of the root, else its size; None where neither is known."""
     box = read_list(attributes["viewBox"]) if "viewBox" in attributes else None
     if box is None:
         width, height = (_read_length(attributes, side) for side in ("width", "height"))
@@ -152,10 +149,7 @@ def _read_frame(attributes: Mapping[str, str]) -> Box | None:
 
 
 def _read_style(attributes: Mapping[str, str], above: Mapping[str, str]) -> dict[str, str]:
-    """Return what decides whether a shape is seen: its own, else that of the element round it.
-
-    What lies in an element that is not displayed stays hidden, whatever it says itself (SVG 1.1, 11.5).
-    """
+    """Return what decides whether a shape is seen. What lies in what is not displayed stays hidden (SVG 1.1, 11.5)."""
     own = {name: attributes[name] for name in ("display", "visibility", "fill", "stroke") if name in attributes}
     own |= {found[1]: found[2] for found in _STYLE.finditer(attributes.get("style", ""))}
     if above.get("display") == "none":
@@ -197,7 +191,6 @@ def _read_length(attributes: Mapping[str, str], name: str) -> float | None:
 
 
 def _read_transform(text: str) -> FloatArray:
-    """Return the matrix (3, 3) of a list of transforms, or raise PictureError."""
     counts = {"matrix": (6,), "translate": (1, 2), "scale": (1, 2), "rotate": (1, 3), "skewX": (1,), "skewY": (1,)}
     at, matrix = 0, np.eye(3)
     while at < len(text):
@@ -308,7 +301,6 @@ class PathReader:
         return self.lines
 
     def _do(self, kind: str, given: list[float], origin: complex) -> None:
-        """Draw one command, its coordinates counted from `origin`."""
         before, self.kind = self.kind, kind
         control = self.control if (kind, before) in _CONTINUED else None
         self.control = None
