@@ -65,15 +65,9 @@ def find_needed_friction(
 
 
 def find_code_demand(
-    *,
-    sds: float,
-    height_ratio: float,
-    resonance: float,
-    strength: float,
-    importance: float = 1.0,
-    ductility: float = LEAST_DUCTILITY,
-    period: float | None = None,
-) -> float:
+    *, sds: float, height_ratio: float, resonance: float, strength: float, importance: float = 1.0,
+    ductility: float = LEAST_DUCTILITY, period: float | None = None,
+) -> float:  # fmt: skip
     """Return F_p/W by ASCE 7-22, 13.3.1 [-]; raises ValueError if the height ratio is not between 0 and 1.
 
     * `sds`: S_DS, over g [-].

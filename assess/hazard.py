@@ -198,13 +198,9 @@ _NO_END = fill("the last line of the hazard file has no end: see that its last r
 
 
 def _read_sites(
-    name: str,
-    heading: Sequence[str],
-    rows: Sequence[Line],
-    comments: str,
-    latitude: float | None,
+    name: str, heading: Sequence[str], rows: Sequence[Line], comments: str, latitude: float | None,
     longitude: float | None,
-) -> HazardCurve:
+) -> HazardCurve:  # fmt: skip
     years, notes = _read_comment(comments)
     found = [(place, _LEVEL.fullmatch(cell)) for place, cell in enumerate(heading)]
     places = [place for place, match in found if match]
@@ -237,14 +233,9 @@ def _read_sites(
         )
         notes = (*notes, note)
     return HazardCurve(
-        file=name,
-        pga=levels[known] * GRAVITY,
-        rate=-np.log1p(-chances[known]) / years,
-        latitude=site[0],
-        longitude=site[1],
-        distance=distance,
-        notes=notes,
-    )
+        file=name, pga=levels[known] * GRAVITY, rate=-np.log1p(-chances[known]) / years, latitude=site[0],
+        longitude=site[1], distance=distance, notes=notes,
+    )  # fmt: skip
 
 
 def _read_comment(comments: str) -> tuple[float, tuple[Text, ...]]:

@@ -122,16 +122,10 @@ def _round_up(scatter_log: float) -> float:
 
 def _from_mmi(choice: str, mmi: int) -> Shaking:
     return Shaking(
-        choice=choice,
-        name=choice.partition(",")[0],
-        intensity=float(mmi),
-        pga=WORDEN_PGA.invert(mmi) / 100,
-        pgv=WORDEN_PGV.invert(mmi) / 100,
-        scatter=_round_up(WORDEN_PGV.sigma_log),
-        sources=("Worden et al. 2012",),
-        references=(WORDEN,),
-        is_open=mmi == 10,
-    )
+        choice=choice, name=choice.partition(",")[0], intensity=float(mmi), pga=WORDEN_PGA.invert(mmi) / 100,
+        pgv=WORDEN_PGV.invert(mmi) / 100, scatter=_round_up(WORDEN_PGV.sigma_log), sources=("Worden et al. 2012",),
+        references=(WORDEN,), is_open=mmi == 10,
+    )  # fmt: skip
 
 
 def _from_jma(choice: str, name: str, low: float, high: float, *, is_open: bool = False) -> Shaking:
@@ -139,17 +133,10 @@ def _from_jma(choice: str, name: str, low: float, high: float, *, is_open: bool 
     middle, spread = (low + high) / 2, (high - low) / math.sqrt(12)
     pgv = invert_jma(middle)
     return Shaking(
-        choice=choice,
-        name=name,
-        intensity=middle,
-        pga=pgv / 100 / RATIO,
-        pgv=pgv / 100,
+        choice=choice, name=name, intensity=middle, pga=pgv / 100 / RATIO, pgv=pgv / 100,
         scatter=_round_up(math.hypot(spread, JMA_SIGMA) / JMA_1),
-        sources=("Midorikawa et al. 1999",),
-        references=(MIDORIKAWA,),
-        is_derived=True,
-        is_open=is_open,
-    )
+        sources=("Midorikawa et al. 1999",), references=(MIDORIKAWA,), is_derived=True, is_open=is_open,
+    )  # fmt: skip
 
 
 _ALL = (

@@ -171,8 +171,6 @@ def _build(curve: HazardCurve, integrate: Callable[[FloatArray, FloatArray], flo
     slope = -math.log(rate[1] / rate[0]) / math.log(pga[1] / pga[0])
     more = integrate(np.append(pga[0] / REACH, pga), np.append(rate[0] * REACH**slope, rate))
     return AnnualRate(
-        rate=found,
-        most=found + last * (1 - at_last),
-        beyond=last * at_last / found if found > 0 else 0.0,
+        rate=found, most=found + last * (1 - at_last), beyond=last * at_last / found if found > 0 else 0.0,
         below=max(0.0, 1 - found / more) if more > 0 else 0.0,
-    )
+    )  # fmt: skip

@@ -24,11 +24,9 @@ def versions(*, has_rocked: bool = False, has_routes: bool = False) -> Mapping[s
     import numpy as np
 
     found = {
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-        "system": platform.system(),
+        "python": platform.python_version(), "numpy": np.__version__, "system": platform.system(),
         "machine": platform.machine(),
-    }
+    }  # fmt: skip
     if not (has_rocked or has_routes):
         return found
     from importlib.metadata import version  # here: it takes a tenth of the time of a small run by formulas

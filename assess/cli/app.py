@@ -117,11 +117,8 @@ def build_app(names: Sequence[str] = ()) -> typer.Typer:
     """Return the command line with some commands, by default with all."""
     app = typer.Typer(
         help="Which furniture overturns in an earthquake, and what to fix first.",
-        epilog=START,
-        no_args_is_help=True,
-        pretty_exceptions_enable=False,
-        rich_markup_mode=None,
-    )
+        epilog=START, no_args_is_help=True, pretty_exceptions_enable=False, rich_markup_mode=None,
+    )  # fmt: skip
     app.callback()(_options)
     for name, module in find_commands(names):
         examples = "\n".join(f"  {line}" for line in module.EXAMPLES)

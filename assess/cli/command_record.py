@@ -74,28 +74,16 @@ def describe(channels: Sequence["Channel"]) -> dict[str, Any]:
         "format": ", ".join(dict.fromkeys(one.record.format for one in channels)),
         "channels": [
             {
-                "channel": record.channel,
-                "name": name,
-                "member": record.file,
-                "location": record.location,
-                "azimuth_deg": record.azimuth_deg,
-                "vertical": record.vertical,
-                "station": record.station,
-                "event": record.event,
-                "start": record.start,
-                "time_step_s": record.time_step,
+                "channel": record.channel, "name": name, "member": record.file, "location": record.location,
+                "azimuth_deg": record.azimuth_deg, "vertical": record.vertical, "station": record.station,
+                "event": record.event, "start": record.start, "time_step_s": record.time_step,
                 "samples": int(record.acceleration.size),
                 "pfa_header_g": None if record.header_pfa is None else record.header_pfa / GRAVITY,
-                "pfa_file_g": record.file_pfa / GRAVITY,
-                "pfa_g": motion.pfa / GRAVITY,
-                "pfv_cm_s": motion.pfv * 100,
-                "pfd_cm": motion.pfd * 100,
-                "corrected": record.corrected,
-                "treatment": treatment(record),
+                "pfa_file_g": record.file_pfa / GRAVITY, "pfa_g": motion.pfa / GRAVITY, "pfv_cm_s": motion.pfv * 100,
+                "pfd_cm": motion.pfd * 100, "corrected": record.corrected, "treatment": treatment(record),
                 "notes": list(record.notes),
                 "spectrum": {
-                    "damping": 0.05,
-                    "periods_s": list(PERIODS),
+                    "damping": 0.05, "periods_s": list(PERIODS),
                     "pseudo_acceleration_g": [
                         float(value) / GRAVITY for value in _pseudo_acceleration(motion, PERIODS)
                     ],
@@ -103,7 +91,7 @@ def describe(channels: Sequence["Channel"]) -> dict[str, Any]:
             }
             for name, record, motion in channels
         ],
-    }
+    }  # fmt: skip
 
 
 def _pseudo_acceleration(motion: "Motion", periods: "Sequence[float] | FloatArray") -> "FloatArray":

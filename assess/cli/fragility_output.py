@@ -98,34 +98,24 @@ class Curves:
         return {
             "schema": SCHEMA,
             **describe_run(self.assessment),
-            "meaning": " ".join(self.say()),
-            "cautions": list(self.cautions()),
-            "scenario": self.assessment.scenario,
+            "meaning": " ".join(self.say()), "cautions": list(self.cautions()), "scenario": self.assessment.scenario,
             "by": found.by,
             "intensity_measure": {"name": found.im, "unit": LABELS[found.im], "key": COLUMNS[found.im]},
-            "draws": found.runs,
-            "seed": found.seed,
+            "draws": found.runs, "seed": found.seed,
             "uncertainty": {"motion": 0.0, "piece": found.has_drawn_pieces},
             "too_stocky": [item.item for item in found.stocky],
             "motions": [
                 {
-                    "floor": one.floor,
-                    "axis": one.demand.axis,
-                    "source": str(one.demand.label),
-                    "spectrum": str(one.spectrum),
-                    "pfa_g": one.demand.pfa / GRAVITY,
-                    "pfv_cm_s": finite(100 * one.demand.pfv),
-                    "mean_pfa_g": one.mean_pfa / GRAVITY,
-                    "mean_pfv_cm_s": 100 * one.mean_pfv,
-                    "pfv_per_pfa_s": one.pfv_per_pfa,
-                    "assumed_motion": one.is_assumed,
-                    "unknown_building": one.is_unknown,
-                    "weak_motions": one.is_weak,
+                    "floor": one.floor, "axis": one.demand.axis, "source": str(one.demand.label),
+                    "spectrum": str(one.spectrum), "pfa_g": one.demand.pfa / GRAVITY,
+                    "pfv_cm_s": finite(100 * one.demand.pfv), "mean_pfa_g": one.mean_pfa / GRAVITY,
+                    "mean_pfv_cm_s": 100 * one.mean_pfv, "pfv_per_pfa_s": one.pfv_per_pfa,
+                    "assumed_motion": one.is_assumed, "unknown_building": one.is_unknown, "weak_motions": one.is_weak,
                 }
                 for one in motions.values()
             ],
             "curves": [self._describe(curve) | {"table": list(self.tabulate(curve))} for curve in found.curves],
-        }
+        }  # fmt: skip
 
     def _describe(self, one: PieceFragility) -> dict[str, Any]:
         """Return a curve without its table, flat."""
@@ -140,18 +130,12 @@ class Curves:
             "pfv_per_pfa_{}_s": one.pfv_per_pfa,
         }
         return {
-            "name": one.name,
-            "type": one.type or None,
-            "items": [item.item for item in one.items],
-            "floors": list(one.floors),
-            "pieces": one.pieces,
+            "name": one.name, "type": one.type or None, "items": [item.item for item in one.items],
+            "floors": list(one.floors), "pieces": one.pieces,
             "anchored_pieces": sum(item.quantity for item in one.items if item.anchored == "yes"),
-            "kind": curve.kind,
-            "why": str(curve.why),
+            "kind": curve.kind, "why": str(curve.why),
             f"median_{level}": finite(curve.median / unit),
-            "beta": finite(curve.dispersion),
-            "misfit": finite(curve.misfit),
-            "is_lognormal": curve.is_lognormal,
+            "beta": finite(curve.dispersion), "misfit": finite(curve.misfit), "is_lognormal": curve.is_lognormal,
             **{
                 name.format(end): choose(values)
                 for name, values in ranges.items()
@@ -161,7 +145,7 @@ class Curves:
             "unknown_building": any(motion.is_unknown for motion in motions),
             "weak_motions": any(motion.is_weak for motion in motions),
             "may_be_too_low": one.may_be_too_low,
-        }
+        }  # fmt: skip
 
     def tabulate(self, one: PieceFragility) -> Iterator[dict[str, Any]]:
         """Yield the levels of a curve with what fell at each."""
@@ -170,11 +154,9 @@ class Curves:
         for at, level in enumerate(curve.levels.tolist()):
             yield {
                 COLUMNS[self.found.im]: round(level / unit, DECIMALS),
-                "trials": int(curve.trials[at]),
-                "fallen": int(curve.fallen[at]),
-                "share": float(curve.shares[at]),
+                "trials": int(curve.trials[at]), "fallen": int(curve.fallen[at]), "share": float(curve.shares[at]),
                 "fitted": None if fitted is None else float(fitted[at]),
-            }
+            }  # fmt: skip
 
     def to_json(self) -> str:
         """Return the document as text."""

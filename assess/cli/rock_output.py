@@ -72,14 +72,9 @@ class Case:
 
 
 def read_case(
-    breadth_cm: float,
-    height_cm: float,
-    record: str,
-    pfa_g: float | None,
-    restitution: float | None,
-    baseline: str,
+    breadth_cm: float, height_cm: float, record: str, pfa_g: float | None, restitution: float | None, baseline: str,
     centre_percent: float | None = None,
-) -> Case:
+) -> Case:  # fmt: skip
     """Check the options, by the limits of the workbook, and read the record; InputError where one cannot be used."""
     check_size("breadth", breadth_cm)
     check_size("height", height_cm)
@@ -98,16 +93,13 @@ def read_case(
     own = channel.motion
     factor = 1.0 if pfa_g is None else pfa_g / (own.pfa / GRAVITY)
     return Case(
-        breadth=breadth_cm * LENGTH["cm"],
-        height=height_cm * LENGTH["cm"],
+        breadth=breadth_cm * LENGTH["cm"], height=height_cm * LENGTH["cm"],
         centre=MIDDLE if centre_percent is None else centre_percent * SHARE["%"],
         restitution=math.nan if restitution is None else restitution,
-        channel=channel,
-        baseline=cast("Baseline", baseline),
+        channel=channel, baseline=cast("Baseline", baseline),
         motion=Motion(factor * own.acceleration, factor * own.velocity, factor * own.displacement, own.time_step),
-        factor=factor,
-        pfa_g=own.pfa / GRAVITY if pfa_g is None else pfa_g,
-    )
+        factor=factor, pfa_g=own.pfa / GRAVITY if pfa_g is None else pfa_g,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -218,12 +210,10 @@ def _slide(case: Case, share: float, friction: float) -> tuple[dict[str, Any], l
     lines.append(f"         sliding without rocking, it slips by {slip_cm:.2f} cm at most (Newmark 1965)")
     lines.append("         the outcome above is that without sliding")
     return {
-        "coefficient": friction,
-        "branch": start.word,
+        "coefficient": friction, "branch": start.word,
         "critical_friction": None if math.isnan(needed) else needed,
-        "outside_shenton": is_outside,
-        "peak_slip_cm": slip_cm,
-    }, lines
+        "outside_shenton": is_outside, "peak_slip_cm": slip_cm,
+    }, lines  # fmt: skip
 
 
 def describe(case: Case, found: Found) -> dict[str, Any]:
@@ -242,11 +232,9 @@ def describe(case: Case, found: Found) -> dict[str, Any]:
 def describe_verdict(response: Response) -> dict[str, Any]:
     """Return what a block did as a part of the document."""
     return {
-        "overturned": response.overturned,
-        "max_rotation_ratio": response.rotation,
-        "impacts": response.impacts,
+        "overturned": response.overturned, "max_rotation_ratio": response.rotation, "impacts": response.impacts,
         "overturn_time_s": response.fall_time if response.overturned else None,
-    }
+    }  # fmt: skip
 
 
 def list_lines(case: Case, found: Found) -> Iterator[str]:

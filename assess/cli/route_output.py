@@ -99,24 +99,20 @@ class Verdict:
     def describe(self) -> dict[str, Any]:
         """Return it as data, with its text."""
         return {
-            "text": self.say(),
-            "limit": self.fragility.limit,
-            "evaluated_routes": len(self.evaluated),
+            "text": self.say(), "limit": self.fragility.limit, "evaluated_routes": len(self.evaluated),
             "not_evaluated": [one.route for one in self.not_evaluated],
             "not_evaluated_segments": [
                 {"route": one.route, "segments": list(one.unevaluated)}
                 for one in (*self.not_evaluated, *self.evaluated)
                 if one.unevaluated
             ],
-            "below_up_to_g": self.below_up_to_g,
-            "reached_at_g": self.reached_at_g,
+            "below_up_to_g": self.below_up_to_g, "reached_at_g": self.reached_at_g,
             "first": [{"route": one.route, "pieces": _list_causes(one)} for one in self.first],
             "routes_reaching": self.reaching,
             "reached_at_g_if_anchors_fail": self.anchored_at_g or self.reached_at_g,
             "first_if_anchors_fail": [one.route for one in self.anchored],
-            "lower_bounds": self.lower_bounds,
-            "pieces_left_out": self.fragility.unplaced,
-        }
+            "lower_bounds": self.lower_bounds, "pieces_left_out": self.fragility.unplaced,
+        }  # fmt: skip
 
     def say(self) -> str:
         """Return it in a sentence or two, with what decides how far it can be relied on."""
@@ -220,29 +216,23 @@ class Sweep:
             )
         return {
             **describe_run(self.assessment, has_routes=True),
-            "verdict": self.verdict.describe(),
-            "meaning": " ".join((*MEANING, drawn)),
-            "cautions": list(self.cautions()),
-            "scenario": self.assessment.scenario,
-            "runs": fragility.runs,
+            "verdict": self.verdict.describe(), "meaning": " ".join((*MEANING, drawn)),
+            "cautions": list(self.cautions()), "scenario": self.assessment.scenario, "runs": fragility.runs,
             "seed": fragility.seed,
             "uncertainty": None if found is None else asdict(found),
             "pfa_g": self.pfa_g,
             "inserted_g": [_in_g(value) for value in fragility.values if value in fragility.inserted],
             "routes": [self._describe(route) for route in fragility.routes],
-        }
+        }  # fmt: skip
 
     def _describe(self, one: RouteFragility) -> dict[str, Any]:
         anchored = one.if_anchors_fail or (None,) * len(one.blocked)
         pairs = zip(self.pfa_g, one.blocked, anchored, self._inserted, strict=True)
         return {
-            "route": one.route,
-            "floors": list(one.floors),
+            "route": one.route, "floors": list(one.floors),
             "scenario_pfa_g": one.scenario_pfa and [_in_g(peak) for peak in one.scenario_pfa],
-            "evaluated": one.is_evaluated,
-            "unevaluated_segments": list(one.unevaluated),
-            "doubtful_pieces": one.doubtful,
-            "causes": _list_causes(one),
+            "evaluated": one.is_evaluated, "unevaluated_segments": list(one.unevaluated),
+            "doubtful_pieces": one.doubtful, "causes": _list_causes(one),
             "chances": [
                 {"pfa_g": pfa, "inserted": inserted, **_describe_chance(chance, fails)}
                 for pfa, chance, fails, inserted in pairs
@@ -250,7 +240,7 @@ class Sweep:
             ],
             "passes": self._describe_passing(one.blocked) if one.is_evaluated else [],
             "passes_if_anchors_fail": one.if_anchors_fail and self._describe_passing(one.if_anchors_fail),
-        }
+        }  # fmt: skip
 
     @property
     def _inserted(self) -> list[bool]:
@@ -260,16 +250,14 @@ class Sweep:
         sides = {-math.inf: "below", math.inf: "above"}
         return [
             {
-                "chance": level,
-                "where": sides.get(found.low, "between"),
+                "chance": level, "where": sides.get(found.low, "between"),
                 "pfa_g": None if found.is_jump else finite(found.low),
                 "between_g": [found.low, found.high] if found.is_jump else None,
-                "earliest_g": finite(found.earliest),
-                "latest_g": finite(found.latest),
+                "earliest_g": finite(found.earliest), "latest_g": finite(found.latest),
             }
             for level in LEVELS
             for found in (self._find_passing(chances, level),)
-        ]
+        ]  # fmt: skip
 
     def _find_passing(self, chances: Sequence[Chance], level: float) -> "_Passing":
         ways = [[getattr(chance, end) for chance in chances] for end in ("probability", "high", "low")]

@@ -58,15 +58,13 @@ def build_tables(
     }
     pieces: list[Record] = [
         {
-            "path": path,
-            "inventory": origin.inventory,
-            "one": one,
+            "path": path, "inventory": origin.inventory, "one": one,
             **works.get(one.item.index, {}),
             "quantity_low": None if origin.low is None else origin.low[one.item.item],
             "quantity_high": None if origin.high is None else origin.high[one.item.item],
         }
         for one in results
-    ]
+    ]  # fmt: skip
     routes: list[Record] = []
     for one in tables.routes:
         blocked = None if one.state is RouteState.NOT_KNOWN else one.blocked
@@ -148,15 +146,8 @@ def _describe_building(
         return math.fsum(one.adopted.probability * quantities[one.item.item] for one in main)
 
     return {
-        "path": source.path,
-        "status": "assessed",
-        "inventory": origin.inventory,
-        "origin": origin,
-        "index": source.index,
-        "site": site,
-        "counts": counts,
-        "results": results,
-        "sums": sums,
+        "path": source.path, "status": "assessed", "inventory": origin.inventory, "origin": origin,
+        "index": source.index, "site": site, "counts": counts, "results": results, "sums": sums,
         "use": spell_use(site.use),
         **_describe_shaking(inventory),
         "own_motions": len({one.floor for one in results.motions if one.source in OWN_MOTIONS}),
@@ -164,11 +155,9 @@ def _describe_building(
         "motion_uncertainty": results.provenance.uncertainty.motion if uses_scatter(results) else None,
         "is_placed": site.latitude is not None and site.longitude is not None,
         **{name: counts.by_class[risk] for risk, name in CLASS_COLUMNS.items()},
-        "falls_low_inventory": expect(origin.low),
-        "falls_high_inventory": expect(origin.high),
+        "falls_low_inventory": expect(origin.low), "falls_high_inventory": expect(origin.high),
         "draws": 0 if sums.falls is None else len(sums.falls),
-        "falls_p05": low,
-        "falls_p95": high,
+        "falls_p05": low, "falls_p95": high,
         "falls_avoided": math.fsum(entry.falls_avoided for entry in results.schedule.rows),
         "works": sum(one.pieces for one in works),
         "works_without_cost": sum(one.pieces for one in works if one.cost is None),
@@ -177,7 +166,7 @@ def _describe_building(
         "occupants": sum(people) if people else None,
         "people_blocked": sums.people_expected if is_any_known else None,
         "warnings": sum(one.severity == "warning" for one in results.problem_rows),
-    }
+    }  # fmt: skip
 
 
 def _describe_shaking(inventory: Inventory) -> Record:

@@ -156,13 +156,10 @@ def _assess(task: Task, key: str, data: bytes | None) -> Part:
                 if digest := find_digest(path):
                     named[path.relative_to(folder).as_posix()] = digest
         return Part(
-            path=source.path,
-            key=key,
-            status="assessed",
+            path=source.path, key=key, status="assessed",
             tables=build_tables(source, origin, inventory, results, sums),
-            draws=known if len(known) == len(drawn) else {},
-            files=dict(sorted(named.items())),
-        )
+            draws=known if len(known) == len(drawn) else {}, files=dict(sorted(named.items())),
+        )  # fmt: skip
     except WorkbookError as error:
         return _skip(source, key, "", problems=error.problems)
     except AssessError as error:

@@ -282,24 +282,18 @@ class City:
         else:
             range_over = _KNOWN_GROUND if self.ground.is_known else _EARTHQUAKES
         return Group(
-            inventory=inventory,
-            basis=basis,
-            buildings=len(rows),
-            by_class=by_class,
-            range_over=range_over,
-            falls=falls,
-            falls_low_inventory=add_known("falls_low_inventory"),
+            inventory=inventory, basis=basis, buildings=len(rows), by_class=by_class, range_over=range_over,
+            falls=falls, falls_low_inventory=add_known("falls_low_inventory"),
             falls_high_inventory=add_known("falls_high_inventory"),
             falls_avoided=add("falls_avoided"),
             people=build_spread(draws, "people_blocked", add("people_blocked"), known),
             routes={state: round(add(column)) for state, column in STATE_COLUMNS.items()},
-            cost=add_known("cost"),
-            unplaced=sum(not row["is_placed"] for row in rows),
+            cost=add_known("cost"), unplaced=sum(not row["is_placed"] for row in rows),
             own_motions=sum(bool(row["own_motions"]) for row in rows),
             first_buildings=tuple([row for row in rows if row["people_blocked"] or row["expected_falls"]][:FIRST]),
             first_types=_list_types(pieces, basis),
             **{name: round(add(name)) for name in _ADDED},
-        )
+        )  # fmt: skip
 
     def name_building(self, row: Row) -> str:
         """Return the name of a building, its path where it has none, and both where others have the same name."""

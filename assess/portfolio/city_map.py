@@ -230,13 +230,9 @@ def _shorten(latitude: float) -> float:
 
 
 def draw_map(
-    points: Sequence[MapPoint],
-    background: Background | None,
-    *,
-    title: str,
-    isolines: Sequence[Isoline] = (),
+    points: Sequence[MapPoint], background: Background | None, *, title: str, isolines: Sequence[Isoline] = (),
     is_live: bool = False,
-) -> str:
+) -> str:  # fmt: skip
     """Return the map as an SVG element; "" where no building has a place.
 
     The worst of the points are drawn last, so that they lie on top; `title` is the text alternative; `is_live` tells

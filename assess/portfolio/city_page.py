@@ -55,15 +55,9 @@ MOST_SKIPPED, MOST_PRINTED = 200, 12
 
 
 def render_page(
-    city: City,
-    background: Background | None = None,
-    *,
-    options: ReportOptions | None = None,
-    isolines: Sequence[Isoline] = (),
-    repeat: str = "",
-    indexed: Collection[str] = (),
-    progress: Progress = SILENT,
-) -> bytes:
+    city: City, background: Background | None = None, *, options: ReportOptions | None = None,
+    isolines: Sequence[Isoline] = (), repeat: str = "", indexed: Collection[str] = (), progress: Progress = SILENT,
+) -> bytes:  # fmt: skip
     """Return the page of a city as HTML, in the language of the options.
 
     `background` and `isolines` are drawn on the map; `repeat` is the command that assesses one building alone, with
@@ -99,13 +93,9 @@ def render_page(
 
 
 def render_summary(
-    city: City,
-    background: Background | None = None,
-    *,
-    options: ReportOptions | None = None,
-    isolines: Sequence[Isoline] = (),
-    progress: Progress = SILENT,
-) -> bytes:
+    city: City, background: Background | None = None, *, options: ReportOptions | None = None,
+    isolines: Sequence[Isoline] = (), progress: Progress = SILENT,
+) -> bytes:  # fmt: skip
     """Return the summary of a city as PDF/A-3u, or PDF/UA-1 where the options ask for it.
 
     Its date is SOURCE_DATE_EPOCH or a fixed one: the same tables give the same bytes.

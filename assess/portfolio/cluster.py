@@ -61,10 +61,8 @@ def list_versions() -> dict[str, str]:
     return {
         "assess": f"{__version__} ({find_code()[:12]})",
         "Python": ".".join(platform.python_version_tuple()[:2]),
-        "numpy": numpy.__version__,
-        "scipy": scipy.__version__,
-        "numba": numba.__version__,
-    }
+        "numpy": numpy.__version__, "scipy": scipy.__version__, "numba": numba.__version__,
+    }  # fmt: skip
 
 
 def check_cluster(scheduler: str) -> None:

@@ -74,20 +74,11 @@ class _Job:
 
 
 def run_portfolio(
-    source: str | Path,
-    out: str | Path,
-    settings: Settings | None = None,
-    *,
-    ground: GroundField | None = None,
-    jobs: int | None = None,
-    scheduler: str | None = None,
-    formats: Sequence[str] = FORMATS,
-    background: "Background | None" = None,
-    language: str = "en",
-    repeat: str = "",
-    progress: "Progress | Listener | None" = None,
-    cancel: Event | None = None,
-) -> PortfolioResult:
+    source: str | Path, out: str | Path, settings: Settings | None = None, *, ground: GroundField | None = None,
+    jobs: int | None = None, scheduler: str | None = None, formats: Sequence[str] = FORMATS,
+    background: "Background | None" = None, language: str = "en", repeat: str = "",
+    progress: "Progress | Listener | None" = None, cancel: Event | None = None,
+) -> PortfolioResult:  # fmt: skip
     """Assess many buildings under one earthquake.
 
     * `source`: a folder of workbooks, or an index (.csv).
@@ -127,16 +118,12 @@ def run_portfolio(
             choose_runs(scenarios, settings.runs)  # raises if they do not fit
     path = getattr(ground, "path", None)  # other processes may be in another folder
     job = _Job(
-        sources=sources,
-        out=out,
-        settings=replace(settings, city=True),
+        sources=sources, out=out, settings=replace(settings, city=True),
         ground=ground if path is None else replace(ground, path=path.resolve()),  # type: ignore[type-var]
         formats=tuple(name for name in FORMATS if name in formats),
-        background=background,
-        repeat=repeat,
-        options=ReportOptions(language=language),
+        background=background, repeat=repeat, options=ReportOptions(language=language),
         progress=Progress.of(progress, cancel),
-    )
+    )  # fmt: skip
     with _reserving(out):
         summaries = _assess_all(job, jobs or count_processors(), scheduler)
         files, removed, city = _write_output(job, summaries)
@@ -148,13 +135,10 @@ def run_portfolio(
     from assess.portfolio.city_words import explain_skipped
 
     return PortfolioResult(
-        folder=out,
-        files=files,
-        removed=removed,
-        kept=sum(one.is_kept for one in summaries.values()),
+        folder=out, files=files, removed=removed, kept=sum(one.is_kept for one in summaries.values()),
         skipped=tuple((row["path"], explain_skipped(city, row["path"])) for row in city.skipped),
         city=city,
-    )
+    )  # fmt: skip
 
 
 def check_extras(formats: Sequence[str], scheduler: str | None) -> None:
@@ -321,12 +305,9 @@ def _describe_ground(ground: GroundField | None, buildings: Any) -> "RunGround |
     cautions = [text for text in sites[0].cautions if all(text in one.cautions for one in sites)] if sites else []
     return RunGround(
         kind=sites[0].kind if sites else "scenarios" if hasattr(ground, "event_count") else "shakemap",
-        file=ground.file,
-        sha256=ground.sha256,
-        facts=tuple(common),
-        cautions=tuple(cautions),
+        file=ground.file, sha256=ground.sha256, facts=tuple(common), cautions=tuple(cautions),
         is_known=bool(sites) and not any(one.dispersion for one in sites),
-    )
+    )  # fmt: skip
 
 
 def _describe_run(job: _Job, city: "City", folder: Path, names: Sequence[str]) -> bytes:
@@ -337,13 +318,10 @@ def _describe_run(job: _Job, city: "City", folder: Path, names: Sequence[str]) -
     record = {
         "schema": VERSION,
         "assess": {
-            "version": __version__,
-            "code": find_code(),
-            "settings": job.settings.as_record(),
-            "ground": ground,
+            "version": __version__, "code": find_code(), "settings": job.settings.as_record(), "ground": ground,
             "files": {name: find_digest(folder / name) for name in names},
         },
         "buildings": {status: int((city.buildings["status"] == status).sum()) for status in STATUSES},
         "tables": {name: [[one.key, one.kind, str(one.help)] for one in columns] for name, columns in TABLES.items()},
-    }
+    }  # fmt: skip
     return (json.dumps(record, indent=1, ensure_ascii=False) + "\n").encode("utf-8", "replace")
