@@ -27,16 +27,11 @@ def find_tension(
     *, weight: ArrayLike, acceleration: ArrayLike, breadth: ArrayLike, centre: ArrayLike, height: ArrayLike,
     vertical: ArrayLike = 0.0,
 ) -> FloatArray:  # fmt: skip
-    """Return the tension in a bracket, at least 0, in the unit of `weight`.
+    """Return the tension in a bracket, at least 0, in the unit of `weight`; ValueError if it is not above the floor.
 
-    Raises ValueError if a bracket is not above the floor.
-
-    * `weight`: W, any force.
-    * `acceleration`: k, horizontal, over g [-]: PFA/g, or F_p/W.
-    * `breadth`: B, the side parallel to the motion [m].
-    * `centre`: z, height of the centre of gravity above the floor [m].
-    * `height`: h, of the bracket above the floor, above 0 [m].
-    * `vertical`: k_v, upward, over g [-].
+    `weight`: W; `acceleration`: k, horizontal, over g [-]: PFA/g, or F_p/W; `breadth`: B, the side parallel to the
+    motion; `centre`: z, height of the centre of gravity; `height`: h, of the bracket [m]; `vertical`: k_v, upward, over
+    g [-].
     """
     w, k, b, z, h, up = (np.asarray(one, float) for one in (weight, acceleration, breadth, centre, height, vertical))
     _check_height(h)
@@ -68,14 +63,11 @@ def find_code_demand(
     *, sds: float, height_ratio: float, resonance: float, strength: float, importance: float = 1.0,
     ductility: float = LEAST_DUCTILITY, period: float | None = None,
 ) -> float:  # fmt: skip
-    """Return F_p/W by ASCE 7-22, 13.3.1 [-]; raises ValueError if the height ratio is not between 0 and 1.
+    """Return F_p/W by ASCE 7-22, 13.3.1 [-]; ValueError if the height ratio is not between 0 and 1.
 
-    * `sds`: S_DS, over g [-].
-    * `height_ratio`: z/h of the floor, 0 to 1; 0 is at or below grade.
-    * `resonance`, `strength`: C_AR and R_po of the piece [-].
-    * `importance`: I_p [-].
-    * `ductility`: R_mu of the building [-]: taken as at least 1.3 above grade, and as 1 at or below it.
-    * `period`: T_a of the building [s]; None where it is not known.
+    `sds`: S_DS, over g [-]; `height_ratio`: z/h of the floor, 0 is at or below grade; `resonance`, `strength`: C_AR and
+    R_po of the piece; `importance`: I_p; `ductility`: R_mu of the building, at least 1.3 above grade and 1 at or below
+    it; `period`: T_a of the building [s]; None where it is not known.
     """
     if not 0 <= height_ratio <= 1:
         raise ValueError(f"height_ratio is {height_ratio}, expected 0 to 1")

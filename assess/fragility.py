@@ -73,13 +73,9 @@ class Fragility:
 def fit_fragility(levels: ArrayLike, fallen: ArrayLike, trials: ArrayLike) -> Fragility:
     """Fit the chance of falling, Phi(ln(im / theta) / beta), by maximum binomial likelihood.
 
-    Levels without trials are left out, the others sorted, and equal ones put together. Where the likelihood has no
-    maximum at a rising chance, nothing is fitted and `Fragility.kind` tells why; the table is kept in any case.
-
-    `levels`, (n,): levels of the intensity measure, above 0, in any one unit.
-    `fallen` and `trials`, (n,): how many fell at each level, and of how many; not necessarily whole numbers.
-    Raises ValueError if the arrays differ in shape, a number is not finite, a level is not above 0, a count is below 0
-    or above its trials, or there are no trials at all.
+    `fallen` of `trials` (n,), not necessarily whole, fell at each of the `levels` (n,), above 0 in any one unit. Levels
+    without trials are left out, the others sorted, and equal ones put together. Where the likelihood has no maximum at
+    a rising chance, nothing is fitted and `Fragility.kind` tells why. Raises ValueError if the arrays do not fit this.
     """
     im, fell, count = (np.asarray(values, dtype=np.float64) for values in (levels, fallen, trials))
     if not im.ndim == 1 or not im.shape == fell.shape == count.shape:

@@ -90,15 +90,12 @@ def parse_hazard(
 ) -> HazardCurve:
     """Read a hazard curve from the bytes of a file; `name` is how messages call it.
 
-    Of several sites the nearest to the building is taken. A chance P in T years becomes the rate -ln(1 - P)/T.
+    The file is a table ``pga_g,annual_rate``, or one of OpenQuake; cells are separated by commas, semicolons or tabs,
+    with the last two also with decimal commas. Of several sites the nearest to the building [deg] is taken. A chance P
+    in T years becomes the rate -ln(1 - P)/T.
 
-    Raises InputError if it is no such file, a number is damaged or impossible, rates rise with PGA, fewer than two
-    points remain, or there are several sites and the building's place is not known; the message names the file and the
-    line.
-
-    * `data`: ``pga_g,annual_rate`` and rows of numbers, or a table of OpenQuake; cells separated by commas, semicolons
-      or tabs, with the last two also with decimal commas.
-    * `latitude`, `longitude`: Of the building [deg].
+    Raises InputError, with file and line, if it is no such file, a number is damaged or impossible, rates rise with
+    PGA, fewer than two points remain, or there are several sites and the building's place is not known.
     """
     try:
         if len(data) > LARGEST_FILE:

@@ -225,10 +225,7 @@ class FloorPlan:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Floor:
-    """One floor. `elevation` [m], `pfa` [m/s2] and `pfv` [m/s] by axis where given, `records` by axis.
-
-    `cells` tells in which cell of the sheet a field stands.
-    """
+    """One floor: `elevation` [m], `pfa` [m/s2], `pfv` [m/s] and `records` by axis; `cells` as in `Building`."""
 
     row: int
     floor: str

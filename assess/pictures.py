@@ -50,10 +50,7 @@ class PictureError(InputError):
 
 
 def count_pixels(data: bytes) -> int:
-    """Return how many pixels a picture has by its header.
-
-    Raises PictureError if it is no PNG or JPEG, is too large, or its header is damaged.
-    """
+    """Return how many pixels a picture has by its header; PictureError if that is damaged, none, or too large."""
     size = _read_size(data)
     if math.prod(size) > MOST_PIXELS:
         message = fill(
@@ -66,19 +63,14 @@ def count_pixels(data: bytes) -> int:
 
 
 def check_picture(data: bytes) -> None:
-    """Decode a picture as reports do.
-
-    Raises PictureError if it is no PNG or JPEG, is too large, or is damaged; the message says how to fix it.
-    """
+    """Decode a picture as reports do; PictureError, with how to fix it, if it is none, too large or damaged."""
     _decode(data)
 
 
 def prepare_picture(data: bytes) -> tuple[bytes, str]:
-    """Return the bytes of a picture as a report embeds it, and their media type.
+    """Return the bytes of a picture as a report embeds it, and their media type; PictureError as `check_picture`.
 
     Large ones are made smaller; what the camera or the author wrote into it (place, date, comments) is left out.
-
-    Raises PictureError as `check_picture`.
     """
     picture = _decode(data)
     kind = "PNG" if data.startswith(PNG) else "JPEG"
@@ -128,10 +120,7 @@ def _is_turned(picture: "Image") -> bool:
 
 
 def prepare_photo(data: bytes) -> bytes:
-    """Return a photo as a small JPEG, upright, and without what the camera wrote into it (place, date).
-
-    Raises PictureError as `check_picture`.
-    """
+    """Return a photo as a small upright JPEG, without what the camera wrote; PictureError as `check_picture`."""
     return _write_jpeg(_shrink(data, PHOTO), 75)
 
 

@@ -23,8 +23,7 @@ _Found = TypeVar("_Found")
 class Report:
     """How far a stage, such as "reading" or "motions", is: the `share` that is done [-] is 1.0 once at its end.
 
-    `detail` is what is worked on, in plain English: "121 rows on 4 floors"; `seconds_left` is an estimate for this
-    stage [s], None while too little is done.
+    `detail` is what is worked on, in plain English; `seconds_left` an estimate [s], None while too little is done.
     """
 
     stage: str

@@ -69,10 +69,7 @@ class AnnualRate:
 
 
 def evaluate_rate(curve: HazardCurve, fragility: Fragility) -> AnnualRate:
-    """Return the annual rate of a fragility of peak ground acceleration [m/s2].
-
-    Its lognormal serves where it is near enough to the table (`Fragility.is_lognormal`), else the table.
-    """
+    """Return the annual rate of a fragility of PGA [m/s2]: of its lognormal if near enough, else of its table."""
     if fragility.is_lognormal:
         return integrate_lognormal(curve, median=fragility.median, dispersion=fragility.dispersion)
     return integrate_table(curve, fragility.levels, fragility.shares)
@@ -81,10 +78,8 @@ def evaluate_rate(curve: HazardCurve, fragility: Fragility) -> AnnualRate:
 def integrate_lognormal(curve: HazardCurve, *, median: float, dispersion: float) -> AnnualRate:
     """Return the annual rate of a lognormal fragility, exact for power laws between the points of the curve.
 
-    Raises ValueError if the median is not above 0, or the dispersion is below 0, or one is not finite.
-
-    * `median`: θ, above 0 [m/s2].
-    * `dispersion`: β [-]; with 0 all fall above the median and none below.
+    `median`: θ, above 0 [m/s2]; `dispersion`: β [-]; with 0 all fall above the median and none below. Raises ValueError
+    if one of them is out of range.
     """
     if not (0 < median < math.inf and 0 <= dispersion < math.inf):
         raise ValueError(f"median is {median} and dispersion {dispersion}, expected above 0 and 0 or above")
@@ -111,13 +106,8 @@ def integrate_lognormal(curve: HazardCurve, *, median: float, dispersion: float)
 def integrate_table(curve: HazardCurve, levels: ArrayLike, shares: ArrayLike) -> AnnualRate:
     """Return the annual rate of tabulated shares, exact for power laws between the points of the curve.
 
-    The share is linear in the peak ground acceleration between levels, from 0 at no acceleration on; beyond the last
-    level it stays what it is there.
-
-    Raises ValueError if levels do not rise from above 0, or shares lie outside 0 to 1.
-
-    * `levels` (n,): Rising peak ground accelerations, above 0 [m/s2].
-    * `shares` (n,): Share that falls at each [-], 0 to 1.
+    `shares` (n,) of 0 to 1 at rising `levels` (n,) of peak ground acceleration [m/s2], else ValueError. The share is
+    linear in it between levels, from 0 at no acceleration on; beyond the last level it stays what it is there.
     """
     at = np.concatenate([[0.0], np.asarray(levels, dtype=np.float64)])
     chance = np.concatenate([[0.0], np.asarray(shares, dtype=np.float64)])

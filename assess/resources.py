@@ -56,8 +56,7 @@ def city_file(name: str) -> Path:
 def fonts() -> dict[tuple[str, str], Path]:
     """Return the report's fonts by family and style.
 
-    "Report" is IBM Plex Sans, "Report Signs" holds the signs that it lacks and "Report Mono" has equal widths: the
-    DejaVu fonts that matplotlib brings along.
+    "Report" is IBM Plex Sans; "Report Signs", what it lacks, and "Report Mono" are DejaVu fonts of matplotlib.
     """
     plex = Path(__file__).with_name("fonts")
     found = {
@@ -100,9 +99,6 @@ def open_input(path: Path) -> io.BufferedReader:
 
 
 def read_input(path: Path, most: int) -> bytes:
-    """Return the bytes of a file; of one that is larger than `most`, just more, by which its reader knows.
-
-    Raises OSError as `open_input`; ValueError if its name holds a zero character.
-    """
+    """Return the bytes of a file, just more than `most` of a larger one; OSError, or ValueError by its name."""
     with open_input(path) as file:
         return file.read(most + 1)

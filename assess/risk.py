@@ -46,10 +46,7 @@ LIMITS = (0.03, 0.3, 0.7)
 
 
 def classify(probability: float) -> RiskClass | None:
-    """Return the class of a probability in [0, 1], or None where it is unknown (NaN).
-
-    Raises ValueError if `probability` lies outside [0, 1].
-    """
+    """Return the class of a probability, None where it is unknown (NaN); ValueError if it is outside [0, 1]."""
     if math.isnan(probability):
         return None
     if not 0.0 <= probability <= 1.0:

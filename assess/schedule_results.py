@@ -8,11 +8,7 @@ from assess.risk import RiskClass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorkRow:
-    """Alike pieces of one room that are fixed in the same way: an entry of the schedule is one of these, or several.
-
-    The fields are those of `assess.fields.WORK_FIELDS`; `item_indices` are the places of the pieces in
-    `Results.item_rows`.
-    """
+    """Alike pieces of one room that are fixed in the same way (`WORK_FIELDS`); `item_indices` are of `item_rows`."""
 
     floor: str
     room: str
@@ -40,10 +36,10 @@ class WorkRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ScheduleRow:
-    """One entry of the schedule: a piece, pieces that are alike, or pieces that only help together.
+    """One entry of the schedule: a piece, pieces that are alike, or that only help together (`ENTRY_FIELDS`).
 
-    The fields are those of `assess.fields.ENTRY_FIELDS`; `item_indices` are its pieces, as places in
-    `Results.item_rows`, the most urgent first. `falls_avoided` is 0 of pieces that stand apart.
+    `item_indices` are its pieces in `Results.item_rows`, the most urgent first. `falls_avoided` is 0 of pieces that
+    stand apart.
     """
 
     place: int
@@ -65,10 +61,10 @@ class ScheduleRow:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class State:
-    """What is to be expected of the building: before anything of the schedule is done, or after all of it.
+    """What is to be expected of the building, before or after the schedule (`STATE_FIELDS`).
 
-    The fields are those of `assess.fields.STATE_FIELDS`; `classes` are pieces from low to very high, `routes` counts by
-    state, `rooms_at_risk` those whose best way to the street is not open, or that no segment joins to one.
+    `classes` are pieces from low to very high, `routes` counts by state, `rooms_at_risk` those whose best way to the
+    street is not open, or that no segment joins to one.
     """
 
     falls: float

@@ -126,10 +126,11 @@ _BY_WORKBOOK = ("scenario", "class_by")
 class Settings:
     """How an inventory is assessed.
 
-    Words are accepted in any spelling ("asce 7-22", "ASCE_7-22") and stored in the one listed here.
+    Words are accepted in any spelling ("asce 7-22", "ASCE_7-22") and stored in the one listed here. Raises
+    SettingsError if a value cannot be used.
 
-    * `scenario`, `class_by`, `verify`: one of `SCENARIOS`, `CLASS_BY`, `VERIFY`; None takes the workbook's own, "as
-      filled" and "best formula" where that is blank.
+    * `scenario`, `class_by`: one of `SCENARIOS`, `CLASS_BY`; None takes the workbook's own, "as filled" and "best
+      formula" where that is blank. `verify`: one of `VERIFY`.
     * `runs` (int or "auto"): Motions of each floor and axis, 1 to 100,000; "auto" adds motions until every piece's
       interval lies within one class, at most 5,000. 0 of 100 cannot show "low": the interval's upper end is 0.037.
     * `seed`: Random seed of the generated motions, 0 or above.
@@ -154,8 +155,6 @@ class Settings:
     * `route_risk`: Limit on the chance that an evacuation route is blocked [-], above 0 and below 1: a route is open
       where the upper end of its interval is below it, and fixes are sought until that holds. 0.03 is where the class
       low ends.
-
-    Raises SettingsError if a value cannot be used.
     """
 
     scenario: Scenario | None = None
@@ -200,10 +199,7 @@ def show_given(value: object) -> str:
 
 
 def change_settings(settings: Settings | None, changes: Mapping[str, Any]) -> Settings:
-    """Return settings, the defaults where there are none, with `changes` by keyword.
-
-    Raises SettingsError if there is no such setting, or a value cannot be used.
-    """
+    """Return settings, by default the defaults, with `changes`; SettingsError if one of these cannot be used."""
     names = [field.name for field in fields(Settings)]
     for name in changes:
         if name not in names:

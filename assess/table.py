@@ -170,11 +170,7 @@ Tree = Mapping[str, "Field | Tree"]
 
 
 class Table:
-    """Rows of the same fields; the values of a column are those of `Field.read`.
-
-    * `fields`: The columns, in their order.
-    * `parts`: Returns the rows as `Columns`, some after the others, so that many rows take little memory.
-    """
+    """Rows of the same fields, in `parts` so that many take little memory; values are those of `Field.read`."""
 
     def __init__(self, fields: Iterable[Field], parts: Callable[[], Iterable[Columns]]) -> None:
         self.fields = tuple(fields)

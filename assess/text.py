@@ -27,10 +27,7 @@ _NUMBER = re.compile(r"(\d+)")
 
 
 def plain_text(text: str) -> str:
-    """Return a text without what is not text: control characters are replaced, unseen marks left out.
-
-    Tabs and line breaks stay; a line break of any system becomes a line feed.
-    """
+    """Return a text without control characters and unseen marks; tabs stay, line breaks become line feeds."""
     if text.isascii() and text.isprintable():
         return text
     return UNCLEAN.sub(lambda found: "" if found[1] else REPLACEMENT, with_line_feeds(text))
@@ -72,10 +69,7 @@ class Text(str):
 
 
 def fill(template: str, /, **values: Any) -> Text:
-    """Return a sentence with `values` put into its template: a text now, and what a report needs to translate it.
-
-    Whatever the values hold, the sentence has no control characters and no marks of direction.
-    """
+    """Return a sentence with `values` put into its template, plain whatever they hold, with what translates it."""
     return _fill(template, "", values, values.get("n"))
 
 

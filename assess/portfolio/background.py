@@ -36,11 +36,7 @@ class Background:
 
 
 def read_background(path: Path) -> Background:
-    """Read a GeoJSON file with polygons or lines; points are left out.
-
-    Raises InputError if it cannot be read, is not GeoJSON, is too large, or a coordinate is not longitude and latitude:
-    the message names the place in the file.
-    """
+    """Read a GeoJSON file with polygons or lines; InputError, with the place in the file, if it cannot be used."""
     try:
         found = _parse(path)
         drawn = list(_list_shapes(found, str(found["type"]), 0))

@@ -45,8 +45,8 @@ APART = 0.01
 def read_building(source: Source, data: bytes | None, ground: GroundField | None) -> tuple[Origin, Inventory]:
     """Return where the pieces of a building come from, and its inventory; `data` is its file, where it can be read.
 
-    Raises WorkbookError if its workbook or its COBie file cannot be used; InputError if no inventory can be assumed, or
-    its place lies outside the ground motion of the run.
+    Raises WorkbookError if its file cannot be used; InputError if no inventory can be assumed, or its place lies
+    outside the ground motion of the run.
     """
     if source.kind == "assumed" and source.index is not None:
         origin, rows, problems = build_assumed(source.index)
@@ -159,10 +159,8 @@ class _Kind:
 def build_assumed(row: IndexRow) -> tuple[Origin, Mapping[str, Sequence[Mapping[str, Any]]], tuple[Problem, ...]]:
     """Return the furniture that is assumed of a building of an index, by its use, storeys and floor area.
 
-    Returns its 10 % and 90 % quantities by item, its rows by sheet with the 50 % quantity, and remarks on both.
-
-    Raises InputError if one of them is blank, the use is none that P-58 gives quantities for, or the area is too small
-    or too large.
+    Returns its 10 % and 90 % quantities by item, its rows by sheet with the 50 % quantity, and remarks on both. Raises
+    InputError if one of the three is blank or cannot be used.
     """
     if not row.use.strip():
         fault = "no inventory can be assumed without use. Give it in the index, or survey the building."

@@ -39,11 +39,10 @@ WRITING = ".writing-"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
-    """What was found of one building.
+    """What was found of one building: rows of the tables in the order of their columns, and by what it was computed.
 
-    `key` says by what it was computed, `status` is one of `table_schemas.STATUSES`. `tables` are rows in the order of
-    the columns of `TABLES`; `draws`, by columns of the table draws, are empty where nothing was simulated in common
-    draws; `files` that the workbook names, relative to its folder, have their SHA-256.
+    `status` is one of `STATUSES`; `draws`, by columns of the table draws, are empty where nothing was simulated in
+    common draws; `files` that the workbook names, relative to its folder, have their SHA-256.
     """
 
     path: str

@@ -36,9 +36,9 @@ class Spread:
     """A sum over buildings; where nothing was drawn there are no draws and no ranges.
 
     `apart` is the part of what is expected that is in no draw, of formulas and of routes without joint outcomes: the
-    ranges leave it out. `low` and `high` are what 5 and 95 % of the draws do not exceed: the range over earthquakes;
-    those that are `independent` would be it if buildings were independent of each other, which they are not. `sampling`
-    is the 95 % interval of the expected value without `apart`, by the number of draws alone.
+    ranges leave it out. `low` and `high` are what 5 and 95 % of the draws do not exceed, `independent` ones if
+    buildings were independent of each other, which they are not. `sampling`: 95 % interval of the expected value
+    without `apart`.
     """
 
     expected: float
@@ -152,13 +152,12 @@ class Group:
     """Buildings whose pieces come from one kind of inventory, and whose numbers rest on one basis.
 
     Numbers with the name of a column of the table buildings are the sums of that column; a cost is None where none is
-    known. `by_class` counts free-standing pieces of the basis; `range_over` says what a range is over, which is not
-    always earthquakes. `falls` and `people` are those of pieces in the classes, and of routes whose
-    state is known, by `PEOPLE_RULE`. `falls_low_inventory` and `falls_high_inventory` are expected with all 10 % and
-    all 90 % quantities of assumed inventories, as if all buildings had few or many pieces together. `unplaced` counts
-    buildings without latitude and longitude, whose draws are fully correlated with one another; `own_motions` those of
-    which floors keep a record or a PFA of their own: these are not of this earthquake. What to start with is in the
-    order of `BUILDING_RULE` and `TYPE_RULE`, without what is never expected to fail.
+    known. `by_class` counts free-standing pieces of the basis; `range_over` says what a range is over. `falls` and
+    `people` are those of pieces in the classes, and of routes whose state is known. `falls_low_inventory` and
+    `falls_high_inventory` are expected with all 10 % and all 90 % quantities of assumed inventories. `unplaced` counts
+    buildings without latitude and longitude, whose draws are fully correlated; `own_motions` those of which floors keep
+    a record or a PFA of their own, not of this earthquake. What to start with is without what is never expected to
+    fail.
     """
 
     inventory: str
@@ -201,10 +200,7 @@ class Group:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class City:
-    """The tables of a portfolio with the columns and types of `table_schemas`, and what the run rests on.
-
-    `ground` is None where every workbook has a ground motion of its own.
-    """
+    """The tables of a portfolio, and what the run rests on; `ground` is None where each workbook has its own motion."""
 
     buildings: pd.DataFrame
     pieces: pd.DataFrame

@@ -233,10 +233,9 @@ def draw_map(
     points: Sequence[MapPoint], background: Background | None, *, title: str, isolines: Sequence[Isoline] = (),
     is_live: bool = False,
 ) -> str:  # fmt: skip
-    """Return the map as an SVG element; "" where no building has a place.
+    """Return the map as an SVG element, the worst of the points on top; "" where no building has a place.
 
-    The worst of the points are drawn last, so that they lie on top; `title` is the text alternative; `is_live` tells
-    whether the page's script zooms it, for which marks carry their place and number.
+    `title` is the text alternative; where `is_live`, marks carry their place and number for the page's script.
     """
     if not points:
         return ""

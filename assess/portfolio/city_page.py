@@ -60,10 +60,8 @@ def render_page(
 ) -> bytes:  # fmt: skip
     """Return the page of a city as HTML, in the language of the options.
 
-    `background` and `isolines` are drawn on the map; `repeat` is the command that assesses one building alone, with
-    ``{path}`` in place of its workbook; `indexed` are the buildings of which an index fills in something.
-
-    Raises InputError if a template cannot be used; CancelledError if the work was cancelled.
+    `repeat` is the command that assesses one building alone, with ``{path}`` in place of its workbook; `indexed` are
+    the buildings of which an index fills in something.
     """
     options = options or ReportOptions()
     with options.spoken():
@@ -96,12 +94,9 @@ def render_summary(
     city: City, background: Background | None = None, *, options: ReportOptions | None = None,
     isolines: Sequence[Isoline] = (), progress: Progress = SILENT,
 ) -> bytes:  # fmt: skip
-    """Return the summary of a city as PDF/A-3u, or PDF/UA-1 where the options ask for it.
+    """Return the summary of a city as PDF/A-3u, or PDF/UA-1 if asked for: the same bytes for the same tables.
 
-    Its date is SOURCE_DATE_EPOCH or a fixed one: the same tables give the same bytes.
-
-    Raises PdfUnavailableError if WeasyPrint's native libraries are missing; InputError if a template cannot be used;
-    CancelledError if the work was cancelled.
+    Raises PdfUnavailableError if WeasyPrint's native libraries are missing.
     """
     options = options or ReportOptions()
     with options.spoken(), private_folder("assess-page-") as folder:
@@ -373,11 +368,7 @@ STOREYS = ((1, 1), (2, 3), (4, 7), (8, 300))
 
 
 def write_data(city: City, repeat: str, indexed: Collection[str] = ()) -> str:
-    """Return the data of the page as JSON that may stand inside a script element.
-
-    `repeat` is the command that assesses one building alone, with ``{path}`` in it; "" where there is none. `indexed`
-    are the paths of the buildings of which an index fills in something.
-    """
+    """Return the data of the page as JSON that may stand inside a script element; parameters as `render_page`."""
     buildings = []
     for row in city.ranked:
         # the cells of the ranking after the first, in its columns; the class is written by its sign

@@ -55,9 +55,8 @@ def write_tables(parts: Iterable[Part], folder: Path | None) -> "dict[str, pd.Da
     """Write all tables from parts in their order, each read once; return them as frames.
 
     A table is written block by block, as ``NAME.parquet``, or as ``NAME-0001.parquet`` and so on with several blocks;
-    `folder` is None where no files are wanted.
-
-    Raises InputError if files are wanted and DuckDB is not installed; OutputError if a file cannot be written.
+    no files without a folder. Raises InputError if DuckDB is needed and not installed; OutputError if a file cannot be
+    written.
     """
     import pandas as pd
 
@@ -117,10 +116,7 @@ def find_files(folder: Path, name: str) -> list[Path]:
 
 
 def read_table(folder: str | Path, name: str) -> "pd.DataFrame":
-    """Return a table of a portfolio, one of `TABLES`, from the folder of its results.
-
-    Raises InputError if there is no such table, it cannot be read, or DuckDB is not installed.
-    """
+    """Return a table, one of `TABLES`, from the folder of results; InputError if that or DuckDB cannot be used."""
     if name not in TABLES:
         raise InputError.about(
             "{name!r} is an unknown table; expected one of: {names}", name=name, names=", ".join(TABLES)

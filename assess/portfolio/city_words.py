@@ -275,8 +275,7 @@ def label_piece(row: Row, basis: str | None) -> str:
 def say_probability(row: Row) -> str:
     """Return a chance with its interval where it has one: ``12.3 % (10.1 to 15.0 %)``.
 
-    Of an anchored piece it is said that it is the chance if it stood free; a route whose state is not known has none,
-    as what is missing is left out of it.
+    That of an anchored piece is the one if it stood free; a route whose state is not known has none.
     """
     if row.get("state") == RouteState.NOT_KNOWN:
         return words.DASH
@@ -311,10 +310,7 @@ def say_falls(row: Row) -> str:
 
 
 def say_people(row: Row) -> str:
-    """Return the expected people on blocked routes of those on routes that are known; the others next to them.
-
-    A dash where no people are filled in.
-    """
+    """Return the expected people on blocked routes of those on known ones, and the others; a dash without people."""
     occupants, missing = row["occupants"], row["people_not_known"] or 0
     if not occupants:
         return words.DASH

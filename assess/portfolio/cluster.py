@@ -85,9 +85,9 @@ def check_cluster(scheduler: str) -> None:
 def run_on_cluster(tasks: Sequence[Task], scheduler: str, progress: Progress = SILENT) -> Iterator[Summary]:
     """Yield the summaries of tasks as workers get them done, in no order; the paths are the same on every machine.
 
-    Raises InputError if dask is not installed, the address is none, no scheduler can be reached there or it has no
-    workers, or a worker has another version of a package, several threads, or does not see the folders; OutputError if
-    the scheduler is lost; CancelledError if the work was cancelled; in both cases parts that are written stay.
+    Raises InputError if dask is not installed, no scheduler with workers is at the address, or a worker is not fit for
+    the work; OutputError if the scheduler is lost; CancelledError if the work was cancelled: parts that are written
+    stay.
     """
     check_cluster(scheduler)
     token, folder = os.urandom(8).hex(), tasks[0].out / FOLDER

@@ -59,10 +59,8 @@ class Building:
 def write_example_city(folder: Path, buildings: int = BUILDINGS) -> bool:
     """Write workbooks, index.csv, the ShakeMap grid.xml, coast.geojson and README.md, whole or not at all.
 
-    They have the same bytes every time; a few of the `buildings` have no workbook. Returns whether it was written:
-    False where the folder holds exactly this city already.
-
-    Raises InputError if the folder holds anything else; OSError if a file cannot be written.
+    They have the same bytes every time; a few of the `buildings` have no workbook. Returns False where the folder holds
+    exactly this city already. Raises InputError if it holds anything else; OSError if a file cannot be written.
     """
     folder = folder.resolve()
     folder.parent.mkdir(parents=True, exist_ok=True)

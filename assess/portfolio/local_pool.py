@@ -35,8 +35,8 @@ Process = subprocess.Popen[bytes]
 def run_local(tasks: Sequence[Task], jobs: int, progress: Progress = SILENT) -> Iterator[Summary]:
     """Yield the summaries of tasks as `jobs` processes get them done, in no order.
 
-    Raises CancelledError if the work was cancelled, which ends the processes at once; parts that are written stay;
-    OutputError if no process can be started.
+    Raises CancelledError if the work was cancelled, which ends the processes at once; OutputError if none can be
+    started.
     """
     processes, done = _Processes(), queue.SimpleQueue[Future[Summary]]()
     threads = ThreadPoolExecutor(min(jobs, len(tasks)))

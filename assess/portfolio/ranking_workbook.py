@@ -32,10 +32,7 @@ MOST_PROBLEMS = 5_000
 
 
 def render_ranking(city: City, *, options: ReportOptions | None = None, progress: Progress = SILENT) -> bytes:
-    """Return the ranking of a city as a workbook; the same tables give the same bytes.
-
-    Raises OSError if there is no room for its parts; CancelledError if the work was cancelled.
-    """
+    """Return the ranking of a city as a workbook, the same for the same tables; OSError if there is no room."""
     options = options or ReportOptions()
     with options.spoken(), private_folder("assess-page-") as folder:
         progress.wait_for(lambda: city.groups)

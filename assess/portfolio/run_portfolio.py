@@ -46,10 +46,9 @@ _KEY = re.compile(r"[0-9a-f]{64}")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PortfolioResult:
-    """What a portfolio gave: the folder, what was written to it, and the city.
+    """What a portfolio gave: the folder, files written to it and removed from an earlier run, and the city.
 
-    `removed` are files of an earlier run that were not replaced; `kept` counts buildings whose part of an earlier run
-    was there; `skipped` are those that could not be assessed, with the reason.
+    `kept` counts buildings that an earlier run had assessed; `skipped` could not be assessed, with the reason.
     """
 
     folder: Path

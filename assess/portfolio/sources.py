@@ -59,7 +59,7 @@ class IndexRow:
     """One row of an index, on a line of the file; "" and None where it is blank.
 
     `path` is the workbook, relative to the folder of the index, "" for a building without a survey; degrees are north
-    and east positive, storeys above ground, and the PGA that of the ground.
+    and east positive.
     """
 
     line: int = 0
@@ -84,14 +84,13 @@ _TEXTS = ("path", "building", "use")
 
 
 def read_index(file: Path) -> tuple[IndexRow, ...]:
-    """Read an index, in the order of its rows.
+    """Read an index, in the order of its rows, each on one line.
 
     Cells are separated by commas, semicolons or tabs; columns are found by their names, in any order; lines that begin
-    with # are comments. Numbers are read as those of a workbook: with a decimal point or comma and separators between
-    thousands, refused where both readings can be meant. A row stands on one line.
+    with # are comments. Numbers are read as those of a workbook, refused where they can be read in two ways.
 
-    Raises InputError if it cannot be read, has another column than `COLUMNS`, a cell cannot be used, or a path or the
-    name of a building without one stands there twice; the message names the file and the line.
+    Raises InputError, with the line, if it cannot be read, has another column than `COLUMNS`, a cell cannot be used, or
+    a path or the name of a building without one stands there twice.
     """
     try:
         try:
@@ -262,8 +261,7 @@ def find_sources(source: Path, out: Path | None = None) -> tuple[Source, ...]:
     """Return the buildings of a folder, searched with the folders in it, or of an index (.csv), in the order of paths.
 
     Left out of a folder are hidden files and folders, lock files (~$), the folder `out` of the results and results of
-    `assess`; workbooks in other formats, such as .xls, are refused. Links to workbooks inside the folder count; links
-    that lead out of it, and links to folders, are refused.
+    `assess`; workbooks in other formats are refused, as are links that lead out of it or to folders.
 
     Raises InputError if there is no such folder or index, the index cannot be used, or there is no building in it.
     """
