@@ -95,11 +95,9 @@ def _find_old(folder: Path, wanted: Collection[str]) -> frozenset[str]:
 def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
     """Check before the long work that files can be written to a folder, which need not exist yet.
 
-    * `folder`: where to.
-    * `formats`: the formats of reports that are to be written, if it is about reports.
-
-    Raises OutputError if nothing can be written there; InputError if a folder or a file of the user's stands at the
-    name of a report (see `assess.report.ownership`), or a format needs a package that is not installed.
+    With `formats` it is about reports in these. Raises OutputError if nothing can be written there; InputError if a
+    folder or a file of the user's stands at the name of a report (see `assess.report.ownership`), or a format needs a
+    package that is not installed.
     """
     for name in formats:
         FORMATS[name].check()
@@ -112,10 +110,7 @@ def check_folder(folder: Path, formats: Sequence[str] = ()) -> None:
 
 
 def _write_all(job: Job, folder: Path, formats: Sequence[str]) -> PdfUnavailableError | None:
-    """Write the formats into the stage; return why there is no PDF, where it was to be written.
-
-    The PDFs are begun first, each in a process of its own, and written last.
-    """
+    """Write the formats into the stage; return why there is no PDF, where it was to be written."""
     missing: PdfUnavailableError | None = None
     with ExitStack() as open_, job.progress.stage("rendering") as reports:
         for one in (FORMATS[name] for name in formats):

@@ -118,8 +118,5 @@ def order_floors(floors: Sequence[FloorRow]) -> list[FloorRow]:
 
 
 def report_date(given: str = "") -> str:
-    """Return the date that the workbook gives, else that of the report in the reader's own time zone.
-
-    Where SOURCE_DATE_EPOCH is set, it is that day in UTC.
-    """
+    """Return the given date, else that of the report in the reader's own time zone (of SOURCE_DATE_EPOCH in UTC)."""
     return given or (find_source_date() or report_time().astimezone()).date().isoformat()

@@ -17,10 +17,7 @@ MOST_PRINTED, MOST = 12, 40
 
 
 def build_document(view: View) -> Document:
-    """Return the report in the language in use; figures are cancelled while they are drawn.
-
-    Raises CancelledError if the work was cancelled.
-    """
+    """Return the report in the language in use; raises CancelledError, also while figures are drawn."""
     content, building, sections = view.content, view.run.building, list[Section]()
     for part in view.progress.checked(view.parts):
         built = part.build(view)

@@ -33,10 +33,7 @@ _dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", 
 def write_json(
     results: Results, path: Path, progress: Progress = SILENT, *, files: Mapping[str, str | None] | None = None
 ) -> None:
-    """Write results.json; `SCHEMA` is the JSON Schema of its shape. `progress` is checked row by row.
-
-    `files` are the other files of the run, with their SHA-256 where it is known.
-    """
+    """Write results.json in the shape of `SCHEMA`; `files` are the others of the run, with their SHA-256 if known."""
     routes, schedule = results.route_tables.to_record(), results.schedule
     state = Table.of(STATE_FIELDS, (schedule.before, schedule.after))
     before, after = (text for part in state.json_parts() for text in part)
@@ -133,10 +130,7 @@ _FIRST = re.compile(r"""(?<![;,|\s"'])([;,|\s"']*)([=+\-@＝＋－＠])""")
 
 
 def write_csv(results: Results, path: Path, progress: Progress = SILENT) -> None:
-    """Write items.csv: one row an item, UTF-8 with a byte order mark, by which Excel knows it.
-
-    Texts that a spreadsheet would take for a formula are disarmed, see `disarm`. `progress` is checked row by row.
-    """
+    """Write items.csv, a row an item, with disarmed texts: UTF-8 with a byte order mark, by which Excel knows it."""
     table = results.table("items")
     with path.open("w", encoding="utf-8-sig", newline="") as file:
         writer = csv.writer(file)
@@ -175,10 +169,7 @@ table; all others are VARCHAR."""
 
 
 def write_parquet(results: Results, path: Path) -> None:
-    """Write items.parquet by DuckDB: rows and columns of items.csv, typed; what is not known is NULL.
-
-    The same results give the same bytes. Raises OSError if the file cannot be written.
-    """
+    """Write items.parquet by DuckDB: items.csv with types, always the same bytes; raises OSError."""
     import duckdb
 
     table = results.table("items")

@@ -39,10 +39,7 @@ class Photos:
         return next((pair for pair in shown if pair[1]), None)
 
     def photo_of(self, item_index: int) -> str:
-        """Return the address of the photo of a piece, by its `ItemRow.index`.
-
-        It is "" where the piece has none, or where the photos that were asked for exceed `MOST_SHOWN`.
-        """
+        """Return the address of the photo of a piece by its `ItemRow.index`; "" without one, or beyond `MOST_SHOWN`."""
         at = self.of_item[item_index] if item_index < len(self.of_item) else -1
         if at < 0 or f"photo/{at}" not in self.series:
             return ""

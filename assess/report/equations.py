@@ -86,10 +86,7 @@ def split_line(line: str) -> list[Part]:
 
 
 def write_tex(equation: str) -> str:
-    """Return an equation in TeX.
-
-    Raises NotationError if it is not written in the notation of this module.
-    """
+    """Return an equation in TeX; NotationError if it is not written in the notation of this module."""
     parser = _Parser([one for one in _TOKEN.finditer(equation) if one.lastgroup != "space"])
     parts = list[str]()
     while not parts or parser.kind == "relation":

@@ -60,10 +60,7 @@ def _write_faces(addresses: Mapping[tuple[str, str], str]) -> str:
 
 @cache
 def figure_families() -> tuple[str, ...]:
-    """Return the families of a figure's text for matplotlib: the report's own, then one with East Asian characters.
-
-    The latter is left out where this machine has none.
-    """
+    """Return the families of a figure's text: the report's own, then one with East Asian characters, if any is here."""
     from matplotlib.font_manager import fontManager
 
     known = {font.name for font in fontManager.ttflist}

@@ -77,9 +77,6 @@ def build_table(columns: Sequence[PageColumn], rows: Iterable[Any], kind: str, c
     return table([one.column for one in columns], cells, kind, caption, is_named=True)
 
 
-_LENGTHS: Mapping[str, Callable[[float], str]] = {"m": words.in_m, "cm": words.in_cm}
-
-
 def of_field(field: Field, **more: Any) -> PageColumn:
     """Return the column of a field of the results; `more` are parameters of `PageColumn` that differ."""
     is_number = field.kind in NUMBERS
@@ -96,8 +93,8 @@ def say_value(field: Field, value: Any) -> str:
         return words.percent(value)
     if field.kind == "count":
         return number(value, ",d")
-    if field.unit in _LENGTHS:
-        return _LENGTHS[field.unit](value)
+    if field.unit in ("m", "cm"):
+        return (words.in_m if field.unit == "m" else words.in_cm)(value)
     if field.kind == "number":
         return words.fixed(value, len(field.format.partition(".")[2].rstrip("%")) if field.format else 1)
     if field.kind == "flag":

@@ -14,10 +14,7 @@ if TYPE_CHECKING:
 
 
 def report_time() -> datetime.datetime:
-    """Return the time of the report in UTC: that of SOURCE_DATE_EPOCH where it is set (reproducible-builds.org).
-
-    Raises InputError if that is no date.
-    """
+    """Return the time of the report in UTC, of SOURCE_DATE_EPOCH where it is set (InputError if that is no date)."""
     return find_source_date() or datetime.datetime.now(datetime.UTC)
 
 

@@ -20,18 +20,14 @@ _WORD = re.compile(r"(\s+|(?<=[\w)])-(?=\w))")
 
 
 def open_template(name: str, options: ReportOptions) -> Any:
-    """Return a template: it escapes every text and is strict about names.
-
-    Those of a firm's own are rendered in a sandbox, which takes longer.
-    """
+    """Return a template, which escapes texts and is strict about names; a firm's own runs in a sandbox, more slowly."""
     return _environment(options.templates, options.folders).get_template(name)
 
 
 def render_template(name: str, options: ReportOptions, values: Mapping[str, Any], progress: Progress = SILENT) -> str:
-    """Return a template with its names filled in.
+    """Return a template with its names filled in; raises CancelledError.
 
-    Raises InputError if a template of the firm's own cannot be used: it names the file, the line and the reason;
-    CancelledError if the work was cancelled.
+    Raises InputError with file, line and reason if a template of the firm's own cannot be used.
     """
     jinja2 = progress.wait_for(lambda: importlib.import_module("jinja2"))
     errors = (jinja2.TemplateError, TypeError, ValueError, ArithmeticError, LookupError, AttributeError)

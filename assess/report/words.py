@@ -239,10 +239,7 @@ def find_highest(one: ItemResult) -> RiskClass:
 
 
 def say_chance(probability: float | None, low: float | None = None, high: float | None = None) -> str:
-    """Return a chance with its interval, ``3.0 % (1.0 to 8.5 %)``; alone where there is none, or its ends are the same.
-
-    A dash stands for a chance that is not known.
-    """
+    """Return a chance with its interval, ``3.0 % (1.0 to 8.5 %)``, alone if both ends are alike; a dash if unknown."""
     if probability is None or low is None or high is None or in_percent(low) == in_percent(high):
         return percent(probability)
     interval = _("({low} to {high} %)", low=in_percent(low), high=in_percent(high))

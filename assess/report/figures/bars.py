@@ -18,10 +18,7 @@ LEAST = 13.0
 
 
 def draw_bars(counts: Sequence[Counts], title: str, most: int = MOST) -> tuple[Image, int] | None:
-    """Return a bar for each room or floor, and how many have none; None where there is nothing to show.
-
-    A bar has a label, parts from the left, which say symbol and number as there is room, and the sum.
-    """
+    """Return a bar for each room or floor, and how many have none; None where there is nothing to show."""
     there = [one for one in counts if one.total]
     shown = there[:most]
     if not shown:

@@ -69,10 +69,7 @@ def write_letters(letters: Mapping[str, str]) -> str:
 
 @cache
 def draw_math(tex: str) -> MathFigure:
-    """Return an equation, given in the TeX that mathtext reads, as a picture.
-
-    Raises ValueError if it is no TeX that mathtext reads.
-    """
+    """Return an equation, given in TeX, as a picture; ValueError if mathtext cannot read it."""
     folder = cache_folder() / "equations"
     drawn_by = f"{FACE} {MARGIN} {importlib.metadata.version('matplotlib')} {tex}"
     name = hashlib.sha256(drawn_by.encode()).hexdigest()[:32]

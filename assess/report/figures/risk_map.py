@@ -85,10 +85,7 @@ def _in_points(axes: Any, places: Any) -> FloatArray:
 
 
 def _write_texts(axes: Any, lines: Sequence[Line], places: Mapping[Point, Sequence[ItemResult]]) -> None:
-    """Write its chance on each line, where it is clearest of the symbols, and name the worst piece of each place.
-
-    The worst place comes first, as long as there is room.
-    """
+    """Write its chance on each line, clear of the symbols, and name the worst piece of each place, as there is room."""
     symbols = others = _in_points(axes, places)
     taken = [box_around((x, y), GAP, GAP) for x, y in symbols]
     for level, vertices in lines:

@@ -43,10 +43,7 @@ class Exchange:
 def choose_curves(
     program: str, curves: Iterable[PieceFragility], judge: Callable[[PieceFragility], Text | None]
 ) -> tuple[list[PieceFragility], tuple[LeftOut, ...]]:
-    """Return the curves that `judge` has nothing against, and those left out with the reason that it gives.
-
-    Raises InputError, with the reason of the first one, where no curve can be written.
-    """
+    """Return the curves that `judge` has nothing against, and those left out with its reason; InputError if all are."""
     judged = [(one, judge(one)) for one in curves]
     left = tuple(LeftOut(one.name, why) for one, why in judged if why is not None)
     if len(left) == len(judged):

@@ -35,10 +35,7 @@ class Missing:
 
 
 def list_missing(results: Results) -> list[Missing]:
-    """Return the fields of a workbook of which a report cannot show every character in its own fonts.
-
-    They are those that hold text of the user's own, and that reports show.
-    """
+    """Return the fields with text of the user's own of which the report's own fonts lack characters."""
     rows: dict[Sheet, Sequence[Any]] = {
         BUILDING: [results.building],
         FLOORS: results.floor_rows,

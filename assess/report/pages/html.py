@@ -82,11 +82,8 @@ def render(
 ) -> str:  # fmt: skip
     """Return the report as HTML in the language in use (see `ReportOptions.spoken`).
 
-    `for_print` takes the style of the page and the embedded fonts of the PDF, and leaves the script out; `edition`
-    takes the sections of one of the editions (`assess.report.view`).
-
-    Raises InputError if a template cannot be used: it names the file, the line and the reason; CancelledError if the
-    work was cancelled.
+    `for_print` takes the style and fonts of the PDF, without the script; `edition` its sections (`assess.report.view`).
+    Raises InputError with file, line and reason if a template cannot be used; CancelledError if the work was cancelled.
     """
     options = options or ReportOptions()
     view = View(content=content, edition=edition, for_print=for_print, options=options, progress=progress)

@@ -66,13 +66,15 @@ def finish_pdf(
 ) -> None:
     """Write report.pdf or annex.pdf that was begun: PDF/A-3u, or PDF/UA-1 where it is to be accessible.
 
-    * `layout`, `results`, `path`, `options`, `progress`: what was begun, of which results, where to write it, and how.
-    * `data`: results.json, which it carries with the workbook.
-
-    Raises PdfUnavailableError if WeasyPrint's native libraries are missing; OSError if the file cannot be written;
-    CancelledError if the work was cancelled; what is written of the file is of no use.
+    It carries the workbook and `data`, results.json. Raises PdfUnavailableError if native libraries of WeasyPrint are
+    missing; OSError if the file cannot be written; CancelledError; what is written of the file is of no use then.
     """
-    layout.finish(path, progress.wait_for(lambda: list_attached(results, data)), options, progress)
+    files = [attach(DATA, "Data", _("The results, for other programs"), data.read_bytes())]
+    if "workbook" in results.series:
+        description, workbook = _("The inventory that this report was made from"), results.series["workbook"].tobytes()
+        files.append(attach(results.provenance.workbook, "Source", description, workbook))
+    files.sort(key=lambda file: file.name.encode("utf-8", "ignore"))  # as a PDF wants them
+    layout.finish(path, files, options, progress)
 
 
 def print_page(
@@ -99,9 +101,8 @@ def list_problems(results: Results) -> list[Problem]:
     found = glyphs.describe(missing, nowhere)
     if "workbook" in results.series:
         return found
-    message = fill(
-        "{name} is not attached to the PDF: the results hold no copy of it.", name=results.provenance.workbook
-    )
+    message = fill("{name} is not attached to the PDF: the results hold no copy of it.",
+                   name=results.provenance.workbook)  # fmt: skip
     return [Problem("warning", "", "", message), *found]
 
 
@@ -119,19 +120,6 @@ def fix() -> str:
     if sys.platform == "win32":
         return "Install MSYS2, then in its UCRT64 shell: pacman -S mingw-w64-ucrt-x86_64-pango"
     return f"Install them: {DEBIAN} (Debian, Ubuntu), or the packages of Pango of your system."
-
-
-# ---------------------------------------------------------------- attached files
-
-
-def list_attached(results: Results, data: Path) -> list[Attached]:
-    """Return what to attach, sorted by name as a PDF wants it: the workbook as it was read, and results.json."""
-    files = [attach(DATA, "Data", _("The results, for other programs"), data.read_bytes())]
-    if "workbook" in results.series:
-        description = _("The inventory that this report was made from")
-        workbook = results.series["workbook"].tobytes()
-        files.append(attach(results.provenance.workbook, "Source", description, workbook))
-    return sorted(files, key=lambda file: file.name.encode("utf-8", "ignore"))
 
 
 def attach(name: str, relationship: str, description: str, data: bytes) -> Attached:
@@ -159,10 +147,7 @@ class Layout:
         progress: Progress = SILENT,
         moment: datetime | None = None,
     ) -> str:
-        """Have the PDF written, and return what the process printed; raises what `finish_pdf` does.
-
-        Without `options` it is a plain one, of no archival kind.
-        """
+        """Have the PDF written, without `options` a plain one; return what was printed. Raises as `finish_pdf` does."""
         variant = options and (ACCESSIBLE if options.accessible else ARCHIVAL)
         job = {
             "path": str(path),

@@ -9,11 +9,12 @@ from assess.report import blocks, words
 from assess.report.content import FloorPage
 from assess.report.counts import Counts, count
 from assess.report.figures.bars import draw_bars
-from assess.report.figures.plan_drawing import draw_plan, list_legend
+from assess.report.figures.plan import Plan
 from assess.report.page_columns import build_table, motion_columns
 from assess.report.say import ground
 from assess.report.say.piece import list_apart, list_risky
-from assess.report.view import Part, View
+from assess.report.templates import open_template
+from assess.report.view import MOST_ROWS, Part, View
 from assess.results import ItemResult
 from assess.risk import RiskClass
 from assess.text import natural_key
@@ -22,6 +23,8 @@ BESIDE_PLAN = 8
 """Rows of the risky pieces that are listed next to a plan."""
 MOST = 6
 """Motions of a floor that the table lists."""
+KINDS = ("exit", "stair", "door", "room")
+"""Kinds of places, each with a sign of its own."""
 
 
 def build_floors(view: View) -> blocks.Section:
@@ -67,7 +70,7 @@ def _build_floor(view: View, page: FloorPage, at: int) -> blocks.Box:
                                       drafts, all=len(plan.ways)))  # fmt: skip
         kind = f"plan rows-{min(len(risky), BESIDE_PLAN)}"
         about = " ".join(filter(None, texts))
-        found.append(blocks.Figure(draw_plan(plan, view), about, kind, list_legend(plan, view)))
+        found.append(_draw_plan(plan, view, about, kind))
     title = _("Bars: pieces of each class in every room of {floor}", floor=page.title)
     bars = draw_bars(count_rooms(page.results), title) if page.results and not (plan and plan.pieces) else None
     if bars:
@@ -80,6 +83,46 @@ def _build_floor(view: View, page: FloorPage, at: int) -> blocks.Box:
     found += _list_pieces(view, page, risky, BESIDE_PLAN if plan else 20, "" if plan else view.marks)
     is_brief = not plan and len(page.results) <= 12  # then it shares a page with the next
     return blocks.Box(found, f"floor{' brief' if is_brief else ''}", "article", f"floor-{at}")
+
+
+def _draw_plan(plan: Plan, view: View, about: str, kind: str) -> blocks.Figure:
+    """Return the plan, whose pieces and segments lead to their rows on a screen.
+
+    Its legend says what signs and colours mean, the names that had no room, and where the drawing under it comes from.
+    """
+    rows = {number for number, _one in view.shown_segments}
+    text = open_template("plan.svg.j2", view.options).render(
+        plan=plan, for_print=view.for_print, segment_rows=rows, most_rows=MOST_ROWS
+    )
+    image = blocks.Image(text[text.index("<svg") :].rstrip())
+    badges = [blocks.Span(words.risk_label(risk), f"badge {words.class_name(risk)}") for risk in RiskClass]
+    badges += [
+        blocks.Span(words.apart_label(name), "badge apart")
+        for sign, name in ((words.UNCONFIRMED, "unconfirmed"), (words.BY_FORMULA, "formula"))
+        if any(one.symbol == sign for one in plan.pieces)
+    ]
+    badges.append(blocks.Span(words.apart_label("anchored"), "badge anchored"))
+    legend = [blocks.Paragraph(blocks.join_words(badges), "small legend")]
+    if plan.ways:
+        signs = open_template("signs.svg.j2", view.options).module
+        styles, there = dict.fromkeys(one.style for one in plan.ways), {spot.kind for spot in plan.places}
+        ways = [(blocks.Image(str(signs.way_swatch(one))), one.words) for one in styles]  # the worst state first
+        ways += [(blocks.Image(str(signs.place_swatch(kind, _(kind)))), _(kind)) for kind in KINDS if kind in there]
+        shown = blocks.join_words(blocks.Span([sign, f" {name}"], "key") for sign, name in ways)
+        legend.append(blocks.Paragraph(shown, "small legend ways"))
+    if plan.keys:
+        names: list[blocks.Inline] = [_("Names without room on the plan, with X and Y in m:")]
+        for at, key in enumerate(plan.keys, start=1):
+            place = f"{key.name} ({words.in_m(key.at[0])}; {words.in_m(key.at[1])}){',' if at < len(plan.keys) else ''}"
+            names.append(blocks.Span([blocks.strong(str(key.number)), f" {place}"] if key.number else place, "key"))
+        legend.append(blocks.Paragraph(blocks.join_words(names), "small legend keys"))
+    texts = [_("In grey: the plan {file}, placed by the workbook.", file=plan.underlay.file)] if plan.underlay else []
+    if plan.cut_at == "outlines":
+        texts.append(_("Hatching ends at the outlines of the floor; inner walls do not stop it."))
+    elif plan.cut_at:
+        texts.append(_("Hatching ends at the frame of the plan."))
+    legend += [blocks.Paragraph(" ".join(texts), "small legend")] if texts else []
+    return blocks.Figure(image, about, kind, legend)
 
 
 def say_changes(counts: Counts) -> str:

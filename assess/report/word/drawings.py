@@ -67,10 +67,7 @@ def _declare(svg: str) -> str:
 
 
 def draw_all(drawings: Sequence[Drawing], style: str, progress: Progress) -> list[bytes]:
-    """Return the drawings as PNG, drawn with a style.
-
-    Raises PdfUnavailableError if WeasyPrint's native libraries are missing; CancelledError if the work was cancelled.
-    """
+    """Return the drawings as PNG, drawn with a style; raises PdfUnavailableError and CancelledError."""
     if not drawings:
         return []
     from assess.report.pages.pdf import start_layout
