@@ -80,12 +80,12 @@ def build_table(columns: Sequence[PageColumn], rows: Iterable[Any], kind: str, c
 def of_field(field: Field, **more: Any) -> PageColumn:
     """Return the column of a field of the results; `more` are parameters of `PageColumn` that differ."""
     is_number = field.kind in NUMBERS
-    column = PageColumn(field.key, field.short_heading(), lambda row: say_value(field, field.read(row)), is_number,
+    column = PageColumn(field.key, field.short_heading(), lambda row: format_value(field, field.read(row)), is_number,
                         sort=field.read if is_number else None)  # fmt: skip
     return replace(column, **more)
 
 
-def say_value(field: Field, value: Any) -> str:
+def format_value(field: Field, value: Any) -> str:
     """Return a value as a page shows it, by the kind and the format of its field: a dash for what is unknown."""
     if value is None or value == "":
         return "" if field.kind == "text" else words.DASH
@@ -136,7 +136,7 @@ def flags(names: Iterable[str]) -> Words:
 
 
 def _show_flags(one: ItemResult) -> Words:
-    further = words.list_beside(one)
+    further = words.list_remarks(one)
     return join_words([flags(one.adopted.flags), note("; ".join(further)) if further else ""])
 
 
@@ -159,7 +159,7 @@ def list_columns(results: Results, where: Where) -> tuple[PageColumn, ...]:
             "sort": lambda one: int(one.adopted.risk) - (10 if one.is_anchored else 0),
         },
         "adopted_flags": {
-            "text": lambda one: ", ".join([*map(say_flag, one.adopted.flags), *words.list_beside(one)]),
+            "text": lambda one: ", ".join([*map(say_flag, one.adopted.flags), *words.list_remarks(one)]),
             "show": _show_flags,
         },
         "description": {  # stands for the type where there is none
@@ -193,7 +193,7 @@ def short_columns(results: Results, *keys: str) -> tuple[PageColumn, ...]:
         "place", _("Floor, room"),
         lambda one: ", ".join(filter(None, (words.cut(one.item.floor, 8), words.cut(one.item.room, 18)))),
     )  # fmt: skip
-    known["formula"] = PageColumn("formula", _("By formula"), _say_formula)
+    known["formula"] = PageColumn("formula", _("By formula"), _format_formula)
     known["chance"] = replace(known["adopted_probability"], key="chance", heading=_("Chance (interval)"))
     known["room_short"] = replace(known["room"], text=lambda one: words.cut(one.item.room, 14))
     known["ideal"] = PageColumn("ideal", _("If exactly this motion recurred"), words.ideal_chance,
@@ -212,7 +212,7 @@ def say_flag(flag: str) -> str:
     return _(flag.replace("_", " "))
 
 
-def _say_formula(one: ItemResult) -> str:
+def _format_formula(one: ItemResult) -> str:
     """Return the class by formula and its chance; behind an arrow a larger one under another motion of the row."""
     found, worst = one.governing.methods[one.formula_key].value, one.formula.value
     more = f" → {words.percent(worst)}" if has_worse_motion(one, one.formula_key) else ""

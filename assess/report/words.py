@@ -86,10 +86,10 @@ def find_runs(names: Sequence[str], longest: int) -> list[list[int]]:
 
 def join_runs(names: Sequence[str], longest: int) -> list[str]:
     """Return names, each cut at `longest` characters, with each run of them as one text, ``25-07 to 25-09``."""
-    return [_say_run(names, run, longest) for run in find_runs(names, longest)]
+    return [_name_run(names, run, longest) for run in find_runs(names, longest)]
 
 
-def _say_run(names: Sequence[str], run: Sequence[int], longest: int) -> str:
+def _name_run(names: Sequence[str], run: Sequence[int], longest: int) -> str:
     first, last = (cut(names[run[end]], longest) for end in (0, -1))
     return _("{first} to {last}", first=first, last=last) if len(run) > 1 else first
 
@@ -97,7 +97,7 @@ def _say_run(names: Sequence[str], run: Sequence[int], longest: int) -> str:
 def name_pieces(names: Sequence[str], most: int, longest: int = 20) -> str:
     """Return the first names of pieces, runs of them joined, and how many more pieces there are."""
     runs = find_runs(names, longest)
-    named, more = ", ".join(_say_run(names, run, longest) for run in runs[:most]), sum(map(len, runs[most:]))
+    named, more = ", ".join(_name_run(names, run, longest) for run in runs[:most]), sum(map(len, runs[most:]))
     return _("{names} and {more:,} more", names=named, more=more) if more else named
 
 
@@ -136,8 +136,8 @@ def say_span(span: tuple[int, int]) -> str:
 
 def say_falls(expected: float, low: float | None, high: float | None) -> str:
     """Return the expected falls, and what 5 and 95 % of the draws do not exceed: ``3.1 (1 to 6)``."""
-    said = fixed(expected, 1)
-    return said if low is None or high is None else f"{said} ({say_span((round(low), round(high)))})"
+    falls = fixed(expected, 1)
+    return falls if low is None or high is None else f"{falls} ({say_span((round(low), round(high)))})"
 
 
 def list_limits() -> list[tuple[RiskClass, str]]:
@@ -248,10 +248,8 @@ def say_chance(probability: float | None, low: float | None = None, high: float 
 
 def ideal_chance(one: ItemResult) -> str:
     """Return the chance if exactly its governing motion recurred and it were exactly as given, with its interval."""
-    found = one.governing.simulation
-    if found is None or found.ideal is None:
-        return DASH
-    return say_chance(found.ideal.probability, found.ideal.low, found.ideal.high)
+    ideal = one.governing.simulation and one.governing.simulation.ideal
+    return say_chance(ideal.probability, ideal.low, ideal.high) if ideal else DASH
 
 
 def under_record(one: ItemResult) -> str:
@@ -260,29 +258,25 @@ def under_record(one: ItemResult) -> str:
         return _("overturns")
     found = [case.simulation.record_max_rotation_ratio for case in one.cases if case.simulation is not None]
     most = max((ratio for ratio in found if ratio is not None), default=None)
-    if most is None:
-        return DASH
-    if most == 0:
-        return _("stays at rest")
-    if most < 0.005:
-        return _("< {least:.2f} of critical", least=0.01)
-    return _("{ratio:.2f} of critical", ratio=most)
+    if not most:
+        return DASH if most is None else _("stays at rest")
+    return _("< {least:.2f} of critical", least=0.01) if most < 0.005 else _("{ratio:.2f} of critical", ratio=most)
 
 
 LEAST_SLIP = 1.0
-"""Slip [cm] exceeded in 16 % of the draws from which a piece's row tells of it."""
+"""Slip [cm] exceeded in 16 % of the draws from which a piece's row states it."""
 
 
-def list_beside(one: ItemResult) -> list[str]:
-    """Return what is said beside the class of a piece: a scan, how it slides, falls from a wall, its bracket."""
+def list_remarks(one: ItemResult) -> list[str]:
+    """Return the remarks next to the class of a piece: a scan, how it slides, its chance at a wall, its bracket."""
     sliding, one_sided = one.governing.sliding, one.governing.one_sided
-    texts = [said] if (said := say_scanned(one)) else []
+    texts = [say_scanned(one)]
     if sliding is not None and sliding.slip_median_cm is not None and (sliding.slip_84_cm or 0.0) >= LEAST_SLIP:
         texts.append(_("slides up to {median} cm (median), {high} cm (84 %)",
                        median=fixed(sliding.slip_median_cm, 0), high=fixed(sliding.slip_84_cm, 0)))  # fmt: skip
     if one_sided is not None:
         texts.append(_("with the wall at its back {chance}", chance=percent(one_sided)))
-    return [*texts, *filter(None, (say_bracket(one),))]
+    return list(filter(None, (*texts, say_bracket(one))))
 
 
 def say_scanned(one: ItemResult) -> str:

@@ -178,7 +178,7 @@ def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) 
     signs = [(one.name, sign_box(one.sign, unit)) for one in signed if one.sign is not None]
     names, taken = Names(frame, unit, shapes), [*shapes, *(box for _name, box in signs)]
     falls = [bounds(ring) for one in pieces for ring in one.fallen]
-    spots = names.place_spots(places, [*shapes, *falls, *taken[len(shapes) :]])
+    spots = names.place_spots(places, [*taken, *falls])
     inside = [(words.cut(one.name, NAMED), (*one.centre, *one.centre)) for one in rooms if one.name]
     room_names = [one for one in names.place(inside, taken) if one is not None]
     named = [(one.upper, one) for one in pieces if one.upper is not None and one.upper >= RiskClass.MEDIUM]
