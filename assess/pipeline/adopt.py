@@ -110,17 +110,12 @@ def adopt(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings) -> 
     upper = np.where(has_run & can_rock, np.maximum(risk, classify_all(high)), risk)
     basis = np.select([~can_rock, unconfirmed, has_run], [CANNOT_ROCK, UNCONFIRMED, SIMULATED], FORMULA)
     return Adoption(
-        probability=probability,
-        low=np.where(basis == SIMULATED, low, np.nan),
-        high=np.where(basis == SIMULATED, high, np.nan),
-        risk=risk,
-        upper=np.where(ideal_higher, np.maximum(upper, classify_all(ideal)), upper),
-        basis=basis.astype(np.int8),
-        doubtful=doubtful,
-        ideal_higher=ideal_higher,
-        either_axis=np.zeros_like(can_rock),
+        probability=probability, low=np.where(basis == SIMULATED, low, np.nan),
+        high=np.where(basis == SIMULATED, high, np.nan), risk=risk,
+        upper=np.where(ideal_higher, np.maximum(upper, classify_all(ideal)), upper), basis=basis.astype(np.int8),
+        doubtful=doubtful, ideal_higher=ideal_higher, either_axis=np.zeros_like(can_rock),
         rocks_from=find_start(cases, settings),
-    )
+    )  # fmt: skip
 
 
 def _numbers(outcome: Outcome, name: str) -> FloatArray:

@@ -104,18 +104,12 @@ class Integral:
         has_half = is_fitted and at_points.min() <= 0.5 <= at_points.max()
         spread = None if is_cut else spread
         return AnnualRow(
-            rate=found.rate,
-            low=None if spread is None else max(0.0, found.rate * (1 - spread)),
-            high=None if spread is None else found.rate * (1 + spread),
-            chance_a_year=found.chance_within(1),
-            chance_in_50_years=found.chance_within(YEARS),
-            fit="lognormal" if is_fitted else "table",
-            median_g=fitted.median / GRAVITY if has_half else None,
-            dispersion=fitted.dispersion if has_half else None,
-            misfit=fitted.misfit if is_fitted else None,
-            at_least=at_least or is_cut,
-            ends_matter=found.ends_matter,
-        )
+            rate=found.rate, low=None if spread is None else max(0.0, found.rate * (1 - spread)),
+            high=None if spread is None else found.rate * (1 + spread), chance_a_year=found.chance_within(1),
+            chance_in_50_years=found.chance_within(YEARS), fit="lognormal" if is_fitted else "table",
+            median_g=fitted.median / GRAVITY if has_half else None, dispersion=fitted.dispersion if has_half else None,
+            misfit=fitted.misfit if is_fitted else None, at_least=at_least or is_cut, ends_matter=found.ends_matter,
+        )  # fmt: skip
 
     def find_spread(self, happened: NDArray[Any]) -> float | None:
         """Return the half width of the 95 % sampling interval of a rate, over the rate; None where nothing happened.
@@ -191,14 +185,11 @@ def evaluate_annual(assessment: Assessment, *, jobs: int | None, progress: Progr
     if curve is None:
         return None
     tables = AnnualTables(
-        file=curve.file,
-        latitude=curve.latitude,
-        longitude=curve.longitude,
+        file=curve.file, latitude=curve.latitude, longitude=curve.longitude,
         distance_km=None if curve.distance is None else curve.distance / 1000,
-        curve_pga_g=tuple((curve.pga / GRAVITY).tolist()),
-        curve_rate=tuple(curve.rate.tolist()),
+        curve_pga_g=tuple((curve.pga / GRAVITY).tolist()), curve_rate=tuple(curve.rate.tolist()),
         remarks=tuple(curve.remarks),
-    )
+    )  # fmt: skip
     missing = _find_missing(assessment, ground)
     if missing or ground.pga is None:
         return Annual(replace(tables, missing=missing), {}, AnnualWays({}, {}, {}))
@@ -284,11 +275,9 @@ def _integrate(
         ways = _evaluate_ways(scenes, integral, doubtful | several)
     found = replace(
         tables,
-        ground_pga_g=pga / GRAVITY,
-        motion_dispersion=integral.dispersion,
-        runs=integral.runs,
+        ground_pga_g=pga / GRAVITY, motion_dispersion=integral.dispersion, runs=integral.runs,
         factors=tuple((levels / pga).tolist()),
-    )
+    )  # fmt: skip
     return Annual(_sum_up(found, sweep, integral, items, fell, doubtful), items, ways)
 
 
@@ -320,14 +309,10 @@ def _sum_up(
     any_fell = [fell[item] for item in safety]
     found = replace(
         found,
-        pieces=pieces,
-        not_evaluated=unknown,
-        cannot_rock=stocky,
-        at_least=weak,
-        is_lower_bound=bool(weak or unknown),
+        pieces=pieces, not_evaluated=unknown, cannot_rock=stocky, at_least=weak, is_lower_bound=bool(weak or unknown),
         life_safety_pieces=sum(quantity[item] for item in safety),
         life_safety=integral.of_draws(np.any(any_fell, axis=0), at_least=at_least) if safety else None,
-    )
+    )  # fmt: skip
     if not quantity:
         return found
     none = np.zeros((integral.levels.size, integral.runs))

@@ -27,12 +27,10 @@ def find_earthquakes(inventory: Inventory, settings: Settings) -> Earthquakes:
     given_share = spread**2 / (own**2 + spread**2) if spread else 0.0
     shared = SCATTERS[measure].shared if ground is None or ground.shared is None else ground.shared
     return Earthquakes(
-        place=_find_place(inventory, settings),
-        shared=shared,
-        measure=measure,
+        place=_find_place(inventory, settings), shared=shared, measure=measure,
         given=() if ground is None or not given_share else ground.scenarios,
         given_share=0.0 if ground is None or not ground.scenarios else given_share,
-    )
+    )  # fmt: skip
 
 
 def _find_place(inventory: Inventory, settings: Settings) -> tuple[float, float] | None:
@@ -60,15 +58,11 @@ def describe_draws(inventory: Inventory, settings: Settings, earthquakes: Earthq
         return None
     ground = inventory.site_ground
     return EarthquakeDraws(
-        is_city=settings.city,
-        is_placed=earthquakes.place is not None,
-        shared=earthquakes.shared,
-        is_shared_given=ground is not None and ground.shared is not None,
-        measure=earthquakes.measure,
-        range_km=SCATTERS[earthquakes.measure].range_km,
-        scenarios=len(earthquakes.given),
+        is_city=settings.city, is_placed=earthquakes.place is not None, shared=earthquakes.shared,
+        is_shared_given=ground is not None and ground.shared is not None, measure=earthquakes.measure,
+        range_km=SCATTERS[earthquakes.measure].range_km, scenarios=len(earthquakes.given),
         scenario_share=earthquakes.given_share,
-    )
+    )  # fmt: skip
 
 
 def choose_runs(scenarios: int, runs: int | str | None = None) -> int | str:

@@ -516,11 +516,9 @@ def _missing(floor: Floor, scenario: str) -> list[Problem]:
     wanted, where = {"recorded": (fill("record"), "record_x"), "given": ("PFA", "pfa_x")}[scenario]
     message = fill(
         "floor '{floor}' has no {wanted}, which the scenario '{scenario}' needs; it cannot be interpolated, as {why}.",
-        floor=floor.floor,
-        wanted=wanted,
-        scenario=fill(scenario),
+        floor=floor.floor, wanted=wanted, scenario=fill(scenario),
         why=fill("it does not lie between two floors that have one") if placed else fill("its Elevation is blank"),
-    )
+    )  # fmt: skip
     return [Problem("error", "Floors", floor.cell(where), message, _FILL_IN)]
 
 

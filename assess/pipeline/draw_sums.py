@@ -79,16 +79,11 @@ def sum_draws(assessment: Assessment, results: Results, *, progress: Progress = 
         return float(sum(people[route] * chance for route, chance in of.items()))
 
     return DrawSums(
-        falls=fallen,
-        people_blocked=people_blocked,
-        routes_blocked=routes_blocked,
-        joint_routes=tuple(blocked),
-        people_expected=expect(chances),
-        routes_expected=sum(chances.values()),
-        people_apart=expect(apart),
+        falls=fallen, people_blocked=people_blocked, routes_blocked=routes_blocked, joint_routes=tuple(blocked),
+        people_expected=expect(chances), routes_expected=sum(chances.values()), people_apart=expect(apart),
         routes_apart=sum(apart.values()),
         people_not_known=sum(number for route, number in people.items() if route not in chances),
-    )
+    )  # fmt: skip
 
 
 def count_people(tables: RouteTables, route: RouteRow) -> int | None:

@@ -108,17 +108,10 @@ def find_ground(inventory: Inventory) -> Ground:
     elif (by_height := assumed.estimate_period(roof)) is not None:
         known = replace(known, period=by_height, scatter=assumed.SCATTER)
     return Ground(
-        motion=motion,
-        building=known,
-        is_period_given=building.period is not None,
-        is_from_sds=building.ground_pga is None and building.sds is not None,
-        roof=roof,
-        is_highest_floor=is_highest,
-        shaking=shaking,
-        site=site,
-        storeys=None if lowest is None else building.storeys,
-        lowest=lowest or 0,
-    )
+        motion=motion, building=known, is_period_given=building.period is not None,
+        is_from_sds=building.ground_pga is None and building.sds is not None, roof=roof, is_highest_floor=is_highest,
+        shaking=shaking, site=site, storeys=None if lowest is None else building.storeys, lowest=lowest or 0,
+    )  # fmt: skip
 
 
 def find_dispersion(ground: Ground, given: float | None) -> float:

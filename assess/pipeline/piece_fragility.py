@@ -221,14 +221,11 @@ def find_piece_fragilities(
         every, fallen = study.rock(levels)
         stocky = np.unique(case_item[assessment.cases.is_stocky])
         return PieceFragilities(
-            by=by,
-            im=im,
-            runs=int(settings.runs),
-            seed=settings.seed,
+            by=by, im=im, runs=int(settings.runs), seed=settings.seed,
             has_drawn_pieces=assessment.cases.uncertainty.piece and not settings.ideal,
             curves=tuple(study.build_curve(group, every, fallen[group], by) for group in study.groups),
             stocky=tuple(inventory.items[at] for at in stocky),
-        )
+        )  # fmt: skip
 
     return progress.wait_for(find)
 
@@ -318,12 +315,10 @@ class _Study:
         first = items[0]
         sizes = f"{round(100 * first.breadth, 6):g} x {round(100 * first.height, 6):g} cm"
         return PieceFragility(
-            name=first.item if by == "item" else first.type or sizes,
-            type=first.type,
-            items=items,
+            name=first.item if by == "item" else first.type or sizes, type=first.type, items=items,
             curve=fit_fragility(levels[kept], counts @ fallen[:, kept], trials),
             motions=tuple(self.motions[number] for number in own),
-        )
+        )  # fmt: skip
 
 
 def _take_worst(every: Sequence[BoolArray]) -> BoolArray:

@@ -291,15 +291,11 @@ def _on_site(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
         "{what} gives the ground a PGA of {pga:.3f} g{pgv} at the building. The standard deviation of ln {measure} "
         "there is {sigma:.3g} ({source}); with {own:.3g}, Motion uncertainty, the dispersion is {motion:.3g}, the root "
         "of the sum of their squares.",
-        what=_name(used),
-        pga=used.pga / GRAVITY,
-        pgv="" if used.pgv is None else fill(" and a PGV of {pgv:.1f} cm/s", pgv=100 * used.pgv),
-        measure=used.measure,
-        sigma=used.dispersion,
-        source=used.dispersion_source,
-        own=building.motion_uncertainty or 0.0,
+        what=_name(used), pga=used.pga / GRAVITY,
+        pgv="" if used.pgv is None else fill(" and a PGV of {pgv:.1f} cm/s", pgv=100 * used.pgv), measure=used.measure,
+        sigma=used.dispersion, source=used.dispersion_source, own=building.motion_uncertainty or 0.0,
         motion=max(one.dispersion for parallel in demands.values() for one in parallel if one.site),
-    )
+    )  # fmt: skip
     yield Problem("note", "Building", cell, message)
     every = {name: {one.source for one in parallel} for (name, _), parallel in demands.items()}
     own = [name for name, sources in every.items() if not sources & {"profile", "beam"}]

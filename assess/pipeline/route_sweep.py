@@ -236,19 +236,15 @@ class _Study:
         too_stocky = np.intersect1d(self.beside, assessment.case_item[assessment.cases.is_stocky])
         uncertainty = replace(cases.uncertainty, motion=float(cases.dispersion.max(initial=0.0)))
         return Fragility(
-            values=tuple(self.values),
-            inserted=frozenset(self.values) - set(given),
-            limit=settings.route_risk,
-            runs=int(settings.runs),
-            seed=settings.seed,
-            uncertainty=None if settings.ideal else uncertainty,
+            values=tuple(self.values), inserted=frozenset(self.values) - set(given), limit=settings.route_risk,
+            runs=int(settings.runs), seed=settings.seed, uncertainty=None if settings.ideal else uncertainty,
             routes=tuple(self._describe_route(name, items) for name in self.names),
             generic=name_floors(made for made, _ in ensembles if made.is_assumed),
             unshaped=name_floors(made for made, _ in ensembles if made.is_unknown),
             weak=name_floors(made for made, one in ensembles if one.is_weak),
             stocky=sum(inventory.items[at].quantity for at in too_stocky),
             unplaced=sum(count_unplaced(scene, floor.floor) for floor in inventory.floors),
-        )
+        )  # fmt: skip
 
     def _describe_route(self, name: str, doubtful: frozenset[int]) -> RouteFragility:
         assessment, levels = self.sweep.assessment, [self.levels[value] for value in self.values]

@@ -17,14 +17,7 @@ from assess.errors import InputError, OutputError
 from assess.i18n import fill
 from assess.methods import NO_WALL, SIDE_UNKNOWN, Cases, Method, all_methods, simulation
 from assess.model import AXES, Inventory
-from assess.pipeline.adopt import (
-    UNCONFIRMED,
-    adopt,
-    choose_items,
-    find_governing,
-    find_ruling,
-    unite_axes,
-)
+from assess.pipeline.adopt import UNCONFIRMED, adopt, choose_items, find_governing, find_ruling, unite_axes
 from assess.pipeline.anchors import anchor_first, anchor_named, find_held, find_spread, spell_names
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.city_draws import check_draws, find_earthquakes, number_pieces
@@ -173,24 +166,12 @@ def _compute(
         *of_routes,
     ]
     return Assessment(
-        inventory=inventory,
-        settings=settings,
-        scenario=scenario,
-        suite=suite,
-        filled=filled,
-        demands=demands,
-        methods=every,
-        cases=cases,
-        case_item=case_item,
-        case_demand=case_demand,
-        outcomes=outcomes,
-        adoption=adoption,
-        either_axis=both,
-        governing=governing,
-        held=find_held(inventory, cases.pfa[governing], find_spread(cases)[governing]),
-        obstructions=obstructions,
+        inventory=inventory, settings=settings, scenario=scenario, suite=suite, filled=filled, demands=demands,
+        methods=every, cases=cases, case_item=case_item, case_demand=case_demand, outcomes=outcomes, adoption=adoption,
+        either_axis=both, governing=governing,
+        held=find_held(inventory, cases.pfa[governing], find_spread(cases)[governing]), obstructions=obstructions,
         problems=(*inventory.problems, *map(inventory.place, remarks)),
-    )
+    )  # fmt: skip
 
 
 def build_results(

@@ -169,20 +169,15 @@ def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> Wo
         room=first.room,
         items=tuple(one.item for one in rows),
         item_indices=tuple(one.index for one in rows),
-        pieces=pieces,
-        detail=detail.key,
-        tension_kn=max(tension),
-        tension_high_kn=max(high),
-        tension_code_kn=code,
-        shear_kn=max(shear),
-        fixings=count_fixings(detail, 1000 * max(*high, code or 0.0)),
+        pieces=pieces, detail=detail.key, tension_kn=max(tension), tension_high_kn=max(high), tension_code_kn=code,
+        shear_kn=max(shear), fixings=count_fixings(detail, 1000 * max(*high, code or 0.0)),
         weights_assumed=sum(one.quantity for one in rows if one.anchor.weight_source == "estimate"),
         heights_assumed=0 if detail.is_at_base else sum(one.quantity for one in rows if one.anchor.is_height_assumed),
         is_per_metre=any(one.anchor.is_per_metre for one in rows),
         unit_cost=None if cost is None else cost.unit_cost,
         cost=None if cost is None else pieces * cost.unit_cost,
         cost_source="" if cost is None else cost.source,
-    )
+    )  # fmt: skip
 
 
 def choose_detail(item: ItemRow) -> str:
@@ -212,12 +207,10 @@ def _sum_up(rows: Sequence[ItemResult], routes: RouteTables, held: Collection[in
         classes=tuple(classes[risk] for risk in RiskClass),
         anchored=count_pieces(rows) - count_pieces(free),
         routes=tuple((str(state), states[state]) for state in RouteState if states[state]),
-        blocked_routes=routes.blocked_routes_expected,
-        cut_off_rooms=routes.cut_off_rooms_expected,
-        rooms_at_risk=tuple(list_rooms_at_risk(routes)),
-        unknown_routes=routes.unknown_routes,
+        blocked_routes=routes.blocked_routes_expected, cut_off_rooms=routes.cut_off_rooms_expected,
+        rooms_at_risk=tuple(list_rooms_at_risk(routes)), unknown_routes=routes.unknown_routes,
         unknown_rooms=routes.unknown_rooms,
-    )
+    )  # fmt: skip
 
 
 def list_rooms_at_risk(routes: RouteTables) -> Iterator[str]:

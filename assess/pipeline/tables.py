@@ -94,17 +94,12 @@ def build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path, 
             outcomes={key: replace(outcome, joints=()) for key, outcome in assessment.outcomes.items()},
             adopted=asdict(assessment.adoption),
         ),
-        route_tables=routes,
-        annual=None if assessment.annual is None else assessment.annual.tables,
-        places=inventory.places,
-        catalogue=inventory.catalogue,
-        problem_rows=assessment.problems,
+        route_tables=routes, annual=None if assessment.annual is None else assessment.annual.tables,
+        places=inventory.places, catalogue=inventory.catalogue, problem_rows=assessment.problems,
         underestimates=tuple(problem.message for problem in found),
         methods=tuple(one.info for one in assessment.methods),
-        worked=() if example is None else tuple(work_example(example, assessment)),
-        worked_item=example,
-        series=Series(folder / "series.npz"),
-        draws=DrawTable(draws, np.packbits(fell, axis=1), is_known),
+        worked=() if example is None else tuple(work_example(example, assessment)), worked_item=example,
+        series=Series(folder / "series.npz"), draws=DrawTable(draws, np.packbits(fell, axis=1), is_known),
     )  # fmt: skip
 
 
@@ -145,14 +140,10 @@ def build_motions(assessment: Assessment, demands: Sequence[Demand]) -> tuple[Mo
         row = _copy(
             MotionRow,
             demand,
-            index=index,
-            floor=demand.floor.floor,
-            pfa_g=_sure(demand.pfa, "g"),
-            pfv_cm_s=edge(demand.pfv, "cm/s"),
-            record=demand.name,
-            pfv_follows=demand.drawn is not None and demand.drawn.target.meets != "peaks",
+            index=index, floor=demand.floor.floor, pfa_g=_sure(demand.pfa, "g"), pfv_cm_s=edge(demand.pfv, "cm/s"),
+            record=demand.name, pfv_follows=demand.drawn is not None and demand.drawn.target.meets != "peaks",
             **more,
-        )
+        )  # fmt: skip
         rows.append(row)
     return tuple(rows)
 
@@ -179,27 +170,14 @@ def build_items(assessment: Assessment, routes: "RouteTables") -> tuple[ItemRow,
     for index, (item, anchor) in enumerate(zip(map(inventory.complete, inventory.items), anchors, strict=True)):
         row = ItemRow(
             **dict(zip(shared, read(item), strict=True)),
-            index=index,
-            breadth_cm=_sure(item.breadth, "cm"),
-            width_cm=edge(item.width, "cm"),
-            height_cm=_sure(item.height, "cm"),
-            weight_kg=item.weight,
-            breadth_to_height=item.breadth / item.height,
-            axis_given=item.axis,
-            x_m=item.x,
-            y_m=item.y,
-            edge_distance_m=item.edge_distance,
-            assumed=tuple(item.assumed),
-            extra=tuple(item.extra),
-            routes=tuple(named[index]),
-            governing=governing[index],
-            first_case=firsts[index],
-            last_case=firsts[index + 1],
-            anchor=anchor,
-            is_held=held[index],
-            falls_toward_deg=walls[index].falls_toward if index in walls else None,
+            index=index, breadth_cm=_sure(item.breadth, "cm"), width_cm=edge(item.width, "cm"),
+            height_cm=_sure(item.height, "cm"), weight_kg=item.weight, breadth_to_height=item.breadth / item.height,
+            axis_given=item.axis, x_m=item.x, y_m=item.y, edge_distance_m=item.edge_distance,
+            assumed=tuple(item.assumed), extra=tuple(item.extra), routes=tuple(named[index]),
+            governing=governing[index], first_case=firsts[index], last_case=firsts[index + 1], anchor=anchor,
+            is_held=held[index], falls_toward_deg=walls[index].falls_toward if index in walls else None,
             annual=annual.get(index),
-        )
+        )  # fmt: skip
         rows.append(row)
     return tuple(rows)
 
@@ -244,17 +222,12 @@ def work_example(index: int, assessment: Assessment) -> Iterator[WorkedMethod]:
         if method.steps is None or math.isnan(value):
             continue
         example = Example(
-            breadth=to_edge(item.breadth, LENGTH["cm"]),
-            height=to_edge(item.height, LENGTH["cm"]),
-            pfa=demand.pfa / ACCELERATION["cm/s2"],
-            pfv=demand.pfv / VELOCITY["cm/s"],
-            centre=item.centre_of_gravity,
-            restitution=math.nan if restitution is None else restitution,
-            settings=assessment.settings,
-            value=value,
+            breadth=to_edge(item.breadth, LENGTH["cm"]), height=to_edge(item.height, LENGTH["cm"]),
+            pfa=demand.pfa / ACCELERATION["cm/s2"], pfv=demand.pfv / VELOCITY["cm/s"], centre=item.centre_of_gravity,
+            restitution=math.nan if restitution is None else restitution, settings=assessment.settings, value=value,
             detail={name: array[case].item() for name, array in outcome.detail.items()},
             flags=tuple(flag for flag, array in outcome.flags.items() if array[case]),
-        )
+        )  # fmt: skip
         yield WorkedMethod(method.key, tuple(method.steps(example)), value)
 
 
@@ -266,17 +239,12 @@ def build_provenance(assessment: Assessment) -> Provenance:
     inventory, demands, suite = assessment.inventory, assessment.demands, assessment.suite
     spread = max((one.dispersion for parallel in demands.values() for one in parallel), default=0.0)
     return Provenance(
-        version=__version__,
-        code=find_code(),
+        version=__version__, code=find_code(),
         platform=versions(has_rocked=bool(assessment.joints), has_routes=bool(inventory.routes)),
-        workbook=inventory.file_name,
-        sha256=inventory.sha256,
-        files=dict(inventory.files),
-        scenario=assessment.scenario,
-        uncertainty=replace(assessment.cases.uncertainty, motion=spread),
+        workbook=inventory.file_name, sha256=inventory.sha256, files=dict(inventory.files),
+        scenario=assessment.scenario, uncertainty=replace(assessment.cases.uncertainty, motion=spread),
         earthquakes=describe_draws(inventory, assessment.settings, assessment.cases.earthquakes),
-        shaking=find_shaking(demands),
-        site_ground=find_site(demands),
+        shaking=find_shaking(demands), site_ground=find_site(demands),
         suite=None if suite is None else SuiteInfo(
             folder=suite.folder, names=tuple(name for name, _ in suite.motions), files=dict(suite.files),
             is_scaled=assessment.settings.scale_motions,
@@ -286,8 +254,6 @@ def build_provenance(assessment: Assessment) -> Provenance:
         language=inventory.report_language,
         sheets=dict(inventory.sheets),
         letters={sheet: dict(letters) for sheet, letters in inventory.letters.items()},
-        extra_columns=tuple(inventory.extra_columns),
-        interval_z=interval_width(assessment.settings),
-        looks=LOOKS,
+        extra_columns=tuple(inventory.extra_columns), interval_z=interval_width(assessment.settings), looks=LOOKS,
         profiles=tuple(PROFILES.values()),
     )  # fmt: skip

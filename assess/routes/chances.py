@@ -191,19 +191,12 @@ def build_couplings(
         surely = {key: NONE | EVERY if falls_always else 0 for key, falls_always in certain.items()}
         ends = Draws({**dict.fromkeys(keys, EVERY), **surely}, np.array([0.5, 0.5]))
     return Couplings(
-        keys=keys,
-        joint=joint,
-        independent=independent,
-        correlated=correlated,
-        ends=ends,
-        is_joint=(is_joint := not alone and len(set(sizes.values())) <= 1),
-        runs=min(sizes.values(), default=0),
-        is_drawn=not is_joint and (_is_drawn(mixed) or _is_drawn(lone)),
-        sizes=sizes,
-        pieces=int(falls.quantity[known].sum()),
-        unverified=int(falls.quantity[alone].sum()),
+        keys=keys, joint=joint, independent=independent, correlated=correlated, ends=ends,
+        is_joint=(is_joint := not alone and len(set(sizes.values())) <= 1), runs=min(sizes.values(), default=0),
+        is_drawn=not is_joint and (_is_drawn(mixed) or _is_drawn(lone)), sizes=sizes,
+        pieces=int(falls.quantity[known].sum()), unverified=int(falls.quantity[alone].sum()),
         unconfirmed=int(falls.quantity[[item for item in columns if item in falls.unconfirmed]].sum()),
-    )
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,10 +224,7 @@ def _find_patterns(falls: Falls, unit: _Unit, keys: Sequence[Key]) -> tuple[Bool
     none, one = (1 - p) ** q, q * p * (1 - p) ** (q - 1)
     if len(unit.columns) == 1:
         return np.array([[False], [True]]), np.array([none, 1 - none])
-    return (
-        np.array([[False, False], [True, False], [True, True]]),
-        np.array([none, one, max(0.0, 1 - none - one)]),
-    )
+    return (np.array([[False, False], [True, False], [True, True]]), np.array([none, one, max(0.0, 1 - none - one)]))
 
 
 def _is_drawn(units: Sequence[_Unit]) -> bool:

@@ -91,14 +91,9 @@ def evaluate_routes(
         unknown_rooms=sum(not one.is_known for one in rooms) + len(unjoined),
         draws=DRAWS,
         uncounted_pieces=sum(one.uncounted_pieces for one in by_floor),
-        unjoined_rooms=unjoined,
-        segments=segments,
-        routes=routes,
-        rooms=rooms,
-        floors=tuple(by_floor),
-        furnished_rooms=counted - len(list_unfurnished(inventory)),
-        counted_rooms=counted,
-    )
+        unjoined_rooms=unjoined, segments=segments, routes=routes, rooms=rooms, floors=tuple(by_floor),
+        furnished_rooms=counted - len(list_unfurnished(inventory)), counted_rooms=counted,
+    )  # fmt: skip
 
 
 def _segment(scene: Scene, at: int) -> SegmentRow:
@@ -111,39 +106,23 @@ def _segment(scene: Scene, at: int) -> SegmentRow:
         crowded = stands if scene.is_known(stands, fallen) else None
     free = np.array([not scene.falls.anchored[item] for item, _ in one.gaps.keys], dtype=np.bool_)
     return SegmentRow(
-        route=segment.route,
-        segment=segment.segment,
-        floor=segment.floor or None,
-        from_place=segment.start or None,
-        to_place=segment.end or None,
-        room=segment.room or None,
-        clear_width_m=segment.clear_width,
-        required_width_m=segment.required_width,
-        occupants=segment.occupants,
-        notes=segment.notes,
-        workbook_row=segment.row,
-        length_m=band.length if band else None,
-        start_x_m=band.start[0] if band else None,
-        start_y_m=band.start[1] if band else None,
-        end_x_m=band.end[0] if band else None,
-        end_y_m=band.end[1] if band else None,
-        extends_start_m=band.extends_start if band else 0.0,
+        route=segment.route, segment=segment.segment, floor=segment.floor or None, from_place=segment.start or None,
+        to_place=segment.end or None, room=segment.room or None, clear_width_m=segment.clear_width,
+        required_width_m=segment.required_width, occupants=segment.occupants, notes=segment.notes,
+        workbook_row=segment.row, length_m=band.length if band else None, start_x_m=band.start[0] if band else None,
+        start_y_m=band.start[1] if band else None, end_x_m=band.end[0] if band else None,
+        end_y_m=band.end[1] if band else None, extends_start_m=band.extends_start if band else 0.0,
         extends_end_m=band.extends_end if band else 0.0,
         **scene.outlook([at], lambda blocked, _every: blocked[at], is_evaluated=is_evaluated),
-        evaluated=is_evaluated,
-        clear_width_used_m=one.clear,
-        required_width_used_m=one.required,
+        evaluated=is_evaluated, clear_width_used_m=one.clear, required_width_used_m=one.required,
         standing_width_m=standing,
         # with every free-standing piece fallen
-        least_width_m=one.gaps.residual(free) if is_evaluated else None,
-        needed_width_m=needed,
-        is_blocked_standing=one.is_blocked_standing,
-        insufficient_for_occupants=is_short,
-        insufficient_after_falls=crowded,
-        pieces=tuple(_beside(scene, at)),
+        least_width_m=one.gaps.residual(free) if is_evaluated else None, needed_width_m=needed,
+        is_blocked_standing=one.is_blocked_standing, insufficient_for_occupants=is_short,
+        insufficient_after_falls=crowded, pieces=tuple(_beside(scene, at)),
         other_rooms=tuple(scene.piece(item) for item in one.other_rooms),
         flags=one.flags,
-    )
+    )  # fmt: skip
 
 
 def _beside(scene: Scene, at: int) -> list[BesideRow]:
@@ -182,17 +161,12 @@ def _route(scene: Scene, name: str, rows: Sequence[SegmentRow]) -> RouteRow:
     return RouteRow(
         route=name,
         floors=tuple(dict.fromkeys(one.floor for one in segments.values() if one.floor)),
-        from_places=served,
-        to_places=led,
-        segment_indices=tuple(segments),
-        evaluated=is_evaluated,
+        from_places=served, to_places=led, segment_indices=tuple(segments), evaluated=is_evaluated,
         unevaluated_segments=unevaluated,
         **outlook,
-        decisive_segment=scene.find_decisive(chances, is_known=outlook["state"] != RouteState.NOT_KNOWN),
-        fixes=fixes,
-        is_fixed=is_fixed,
-        missing_after=missing_after,
-    )
+        decisive_segment=scene.find_decisive(chances, is_known=outlook["state"] != RouteState.NOT_KNOWN), fixes=fixes,
+        is_fixed=is_fixed, missing_after=missing_after,
+    )  # fmt: skip
 
 
 def find_joint_draws(
@@ -286,24 +260,15 @@ def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[Segment
         missing_after = list_missing(held, held.settle(part.segments, partial(lose, held)).verdict)
     unevaluated = tuple(at for at in part.segments if not scene.is_evaluated(at))
     return RoomRow(
-        room=place.place,
-        floor=place.floor,
-        exits=exits,
-        by_stairs=part.by_stairs,
-        loses_every_exit=found.chances[0],
-        loses_if_unconfirmed_fall=settled.if_unconfirmed_fall,
-        loses_if_anchors_fail=found.if_anchors_fail,
-        state=verdict.state,
-        missing=list_missing(scene, verdict),
-        most_likely_piece=found.most_likely_piece,
-        decisive_segment=None if telling is None else scene.find_decisive(telling, is_known=is_known),
-        fixes=fixes,
-        is_fixed=is_fixed,
-        missing_after=missing_after,
+        room=place.place, floor=place.floor, exits=exits, by_stairs=part.by_stairs, loses_every_exit=found.chances[0],
+        loses_if_unconfirmed_fall=settled.if_unconfirmed_fall, loses_if_anchors_fail=found.if_anchors_fail,
+        state=verdict.state, missing=list_missing(scene, verdict), most_likely_piece=found.most_likely_piece,
+        decisive_segment=None if telling is None else scene.find_decisive(telling, is_known=is_known), fixes=fixes,
+        is_fixed=is_fixed, missing_after=missing_after,
         unevaluated_segments=tuple(scene.obstructions[at].segment.segment for at in unevaluated),
         unevaluated_indices=unevaluated,
         ways=tuple(ways),
-    )
+    )  # fmt: skip
 
 
 def _ways(scene: Scene, place: Place, part: Part, rows: Sequence[SegmentRow]) -> list[WayRow]:
@@ -355,16 +320,13 @@ def evaluate_floor(
         floor=floor,
         segments=len(segments),
         blocked_segments_expected=sum(one.blocked.probability for one in known if one.blocked),
-        unknown_segments=len(segments) - len(known),
-        routes=len(routes),
-        blocked_routes_expected=sum(blocked),
-        unknown_routes=len(routes) - len(blocked),
-        rooms=len(own),
+        unknown_segments=len(segments) - len(known), routes=len(routes), blocked_routes_expected=sum(blocked),
+        unknown_routes=len(routes) - len(blocked), rooms=len(own),
         cut_off_rooms_expected=sum(room.loses_every_exit.probability for room in own if room.is_known),
         unknown_rooms=sum(not room.is_known for room in own),
         any_room_cut_off=any_cut_off,
         uncounted_pieces=count_unplaced(scene, floor),
-    )
+    )  # fmt: skip
 
 
 def count_unplaced(scene: Scene, floor: str) -> int:

@@ -304,10 +304,7 @@ def find_obstructions(inventory: Inventory, progress: Progress = SILENT) -> tupl
         }
         found.append(
             Obstructions(
-                segment=segment,
-                clear=clear[at],
-                required=required,
-                band=band,
+                segment=segment, clear=clear[at], required=required, band=band,
                 flags=tuple(flag for flag, holds in flags.items() if holds),
                 pieces=tuple(
                     _beside(index, inventory.items[index], covered[index], clear[at], required)
@@ -317,7 +314,7 @@ def find_obstructions(inventory: Inventory, progress: Progress = SILENT) -> tupl
                 other_rooms=tuple(sorted(others)),
                 standing=gaps.residual(np.zeros(len(gaps.keys), dtype=np.bool_)),
             )
-        )
+        )  # fmt: skip
     return tuple(found)
 
 
@@ -338,16 +335,10 @@ def _beside(index: int, item: Item, covered: Coverage, clear: float, required: f
     left = gaps.residual(np.ones(len(gaps.keys), dtype=np.bool_))
     stands = any(not one.falls for one in covered.obstacles)
     return BesideRow(
-        item=item.item,
-        row=item.row,
-        item_index=index,
-        by_plan=covered.obstacles[0].shape is not None,
-        distance_m=covered.distance,
-        reach_m=clear - left,
-        left_m=left,
-        blocks_alone=left < required - NARROWER,
+        item=item.item, row=item.row, item_index=index, by_plan=covered.obstacles[0].shape is not None,
+        distance_m=covered.distance, reach_m=clear - left, left_m=left, blocks_alone=left < required - NARROWER,
         flags=(*covered.flags, *(["standing_inside"] if stands else [])),
-    )
+    )  # fmt: skip
 
 
 def _find_named(inventory: Inventory) -> dict[int, list[int]]:

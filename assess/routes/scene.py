@@ -350,15 +350,13 @@ class Scene:
         found = self.judge(segments, happens)
         settled = self.settle(segments, happens, found)
         return Outlook(
-            state=settled.verdict.state,
-            missing=self.list_missing(settled.verdict, segments),
+            state=settled.verdict.state, missing=self.list_missing(settled.verdict, segments),
             blocked=found.chances[0] if is_evaluated else None,
             blocked_or_reduced=found.chances[-1] if is_evaluated else None,
             blocked_if_unconfirmed_fall=settled.if_unconfirmed_fall if is_evaluated else None,
-            blocked_if_anchors_fail=found.if_anchors_fail,
-            under_record=settled.under_record,
+            blocked_if_anchors_fail=found.if_anchors_fail, under_record=settled.under_record,
             most_likely_piece=found.most_likely_piece,
-        )
+        )  # fmt: skip
 
     def at_best_and_worst(self, draws: Draws, segments: Collection[int], is_blocked: IsBlocked) -> tuple[int, int, int]:
         """Return the sets of the draws in which segments are blocked together, by what is missing.

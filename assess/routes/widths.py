@@ -19,30 +19,22 @@ class WidthRule:
 
 
 _IBC = Reference(
-    authors="International Code Council",
-    year="2021",
-    title="International Building Code",
-    source="sections 1005.3 and 1020.3",
-    remark="Assumed: widths as given in summaries, not compared with the code.",
-)
+    authors="International Code Council", year="2021", title="International Building Code",
+    source="sections 1005.3 and 1020.3", remark="Assumed: widths as given in summaries, not compared with the code.",
+)  # fmt: skip
 _JAPAN = Reference(
-    title="Building Standards Law Enforcement Order (Japan)",
-    source="Article 119",
+    title="Building Standards Law Enforcement Order (Japan)", source="Article 119",
     remark="Assumed: widths as given in a summary, not compared with the order.",
-)
+)  # fmt: skip
 _TOKYO = Reference(
-    authors="Tokyo Metropolitan Government",
-    title="Guidance on preventing the fall of furniture in offices",
+    authors="Tokyo Metropolitan Government", title="Guidance on preventing the fall of furniture in offices",
     source="bousai.metro.tokyo.lg.jp",
     remark="It asks that the main route be straight, with nothing that falls or moves easily beside it or its exits.",
-)
+)  # fmt: skip
 _ITALY = Reference(
-    authors="Ministero dell'Interno (Italy)",
-    year="2015",
-    title="D.M. 3 agosto 2015, Codice di prevenzione incendi",
-    source="section S.4.8",
-    remark="Assumed: widths as commonly quoted, not compared with the decree.",
-)
+    authors="Ministero dell'Interno (Italy)", year="2015", title="D.M. 3 agosto 2015, Codice di prevenzione incendi",
+    source="section S.4.8", remark="Assumed: widths as commonly quoted, not compared with the decree.",
+)  # fmt: skip
 
 RULES = (
     WidthRule(1.2, "main evacuation route of an office", _TOKYO),

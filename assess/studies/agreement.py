@@ -79,17 +79,12 @@ def find_agreement(formula: FloatArray, fallen: NDArray[np.int64], runs: int) ->
     classes = classify_all(chances)
     steps = classes - classify_all(reference)
     return Agreement(
-        cases=int(chances.size),
-        bias=float(np.mean(chances - reference)),
-        scatter=float(np.std(chances - reference)),
-        rank_correlation=correlate_ranks(chances, reference),
-        same_class=float(np.mean(steps == 0)),
-        within_one_class=float(np.mean(np.abs(steps) <= 1)),
-        class_too_low=float(np.mean(steps < 0)),
-        class_too_high=float(np.mean(steps > 0)),
-        beyond_too_low=float(np.mean(classes < classify_all(low))),
+        cases=int(chances.size), bias=float(np.mean(chances - reference)), scatter=float(np.std(chances - reference)),
+        rank_correlation=correlate_ranks(chances, reference), same_class=float(np.mean(steps == 0)),
+        within_one_class=float(np.mean(np.abs(steps) <= 1)), class_too_low=float(np.mean(steps < 0)),
+        class_too_high=float(np.mean(steps > 0)), beyond_too_low=float(np.mean(classes < classify_all(low))),
         beyond_too_high=float(np.mean(classes > classify_all(high))),
-    )
+    )  # fmt: skip
 
 
 def correlate_ranks(one: Sequence[float] | FloatArray, other: Sequence[float] | FloatArray) -> float:

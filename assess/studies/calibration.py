@@ -317,15 +317,10 @@ def find_score(outcomes: Outcomes) -> Score | None:
     if outcomes.fell.all() or not outcomes.fell.any():
         errors = [math.nan, math.nan]
     return Score(
-        cases=int(off.size),
-        fallen=int(outcomes.fell.sum()),
-        floors=int(np.unique(outcomes.floor).size),
-        chance=float(outcomes.chance.mean()),
-        share=float(outcomes.fell.mean()),
-        difference=float(off.mean()),
-        error=errors[0],
-        error_by_source=errors[1],
-    )
+        cases=int(off.size), fallen=int(outcomes.fell.sum()), floors=int(np.unique(outcomes.floor).size),
+        chance=float(outcomes.chance.mean()), share=float(outcomes.fell.mean()), difference=float(off.mean()),
+        error=errors[0], error_by_source=errors[1],
+    )  # fmt: skip
 
 
 def by_class(outcomes: Outcomes) -> dict[RiskClass, Score]:

@@ -207,14 +207,10 @@ def fit_surface(candidate: Candidate, points: Points) -> Surface:
     with np.errstate(divide="ignore"):
         aic = float(n * np.log(rss / n) + 2 * k)
     return Surface(
-        candidate=candidate,
-        coefficients=tuple(coefficients.tolist()),
-        r2=1 - share,
-        adjusted_r2=1 - share * (n - 1) / (n - k),
-        aic=aic,
-        left_out=leave_out(points.z, points.group, refit),
+        candidate=candidate, coefficients=tuple(coefficients.tolist()), r2=1 - share,
+        adjusted_r2=1 - share * (n - 1) / (n - k), aic=aic, left_out=leave_out(points.z, points.group, refit),
         condition=condition,
-    )
+    )  # fmt: skip
 
 
 def _solve(columns: FloatArray, z: FloatArray, candidate: Candidate) -> tuple[FloatArray, float]:
@@ -594,9 +590,5 @@ def collect(fits: Fits) -> dict[str, object]:
 
 
 STUDY = Study(
-    name="fit",
-    order=60,
-    title="Surfaces fitted and ranked, and a bounded alternative",
-    of="section 4",
-    run=run,
+    name="fit", order=60, title="Surfaces fitted and ranked, and a bounded alternative", of="section 4", run=run
 )

@@ -168,11 +168,9 @@ def _environment() -> "Environment":
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     made = Environment(  # noqa: S701 - the pages are Markdown
-        loader=FileSystemLoader(templates() / "studies"),
-        trim_blocks=True,
-        lstrip_blocks=True,
+        loader=FileSystemLoader(templates() / "studies"), trim_blocks=True, lstrip_blocks=True,
         undefined=StrictUndefined,
-    )
+    )  # fmt: skip
     made.filters |= {"form": format, "percent": percent, "points": _points, "span": _span}
     made.filters["forms"] = lambda values, form, separator="/": separator.join(format(one, form) for one in values)
     made.globals |= {"zip": zip}

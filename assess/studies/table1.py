@@ -363,10 +363,6 @@ def _count_high(chances: Iterable[float]) -> int:
 
 
 STUDY = Study(
-    name="table1",
-    order=10,
-    title="One piece up the 50 monitored buildings",
-    of="Table 1 and Fig. 3b, section 3.1",
-    run=run,
-    takes=frozenset({"records", "breadth", "height"}),
-)
+    name="table1", order=10, title="One piece up the 50 monitored buildings", of="Table 1 and Fig. 3b, section 3.1",
+    run=run, takes=frozenset({"records", "breadth", "height"}),
+)  # fmt: skip

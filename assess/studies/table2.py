@@ -212,8 +212,7 @@ def run(options: Options) -> Finding:
             rows=[(*key, *astuple(one)) for key, one in found.agreements.items()],
         ),
         "table2-uncertain": Table(
-            columns=("building", "method", *NAMES),
-            rows=[(*key, *astuple(one)) for key, one in found.uncertain.items()],
+            columns=("building", "method", *NAMES), rows=[(*key, *astuple(one)) for key, one in found.uncertain.items()]
         ),
         "table2-criteria": Table(
             columns=("building", "criterion", "not_met_though_it_falls", "met_though_it_stands"),
@@ -327,10 +326,6 @@ def collect_published() -> dict[str, object]:
 
 
 STUDY = Study(
-    name="table2",
-    order=30,
-    title="Formulas against direct integration, by storey and channel",
-    of="Table 2, sections 3.2.1 to 3.2.3",
-    run=run,
-    takes=frozenset({"breadth", "height"}),
-)
+    name="table2", order=30, title="Formulas against direct integration, by storey and channel",
+    of="Table 2, sections 3.2.1 to 3.2.3", run=run, takes=frozenset({"breadth", "height"}),
+)  # fmt: skip

@@ -452,9 +452,5 @@ def _paint(drawn: Sequence[Limit], paths: Paths, figure: Any) -> None:
 
 
 STUDY = Study(
-    name="solver",
-    order=20,
-    title="Solvers: the overturning limits under a pulse",
-    of="section 2.1 and Fig. 2",
-    run=run,
+    name="solver", order=20, title="Solvers: the overturning limits under a pulse", of="section 2.1 and Fig. 2", run=run
 )
