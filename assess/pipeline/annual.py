@@ -27,8 +27,7 @@ from assess.hazard import HazardCurve
 from assess.i18n import Text, fill, nfill
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.known_ground import Ground, find_ground
-from assess.pipeline.levels import RockedLevels, Sweep
-from assess.pipeline.verify import MOST_PAIRS
+from assess.pipeline.verify import MOST_PAIRS, RockedLevels, Sweep
 from assess.progress import Progress
 from assess.rates import evaluate_rate, integrate_table, list_remarks
 from assess.risk import NORMAL_95

@@ -24,11 +24,9 @@ from assess.errors import InputError
 from assess.fragility import Fragility, fit_fragility
 from assess.i18n import Text, fill
 from assess.model import AXES, Axis, Item
-from assess.pipeline.adopt import is_square
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.assessment import Assessment, is_square
 from assess.pipeline.demand import Demand
-from assess.pipeline.levels import RockedLevels, Sweep
-from assess.pipeline.verify import choose_motions
+from assess.pipeline.verify import RockedLevels, Sweep, choose_motions
 from assess.progress import SILENT, Progress
 from assess.rocking.block import threshold
 from assess.rocking.draws import STILL

@@ -28,8 +28,7 @@ from assess.methods import Ensemble
 from assess.model import AXES
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.ensembles import DrawnEnsemble, GeneratedEnsemble
-from assess.pipeline.levels import RockedLevels, Sweep
-from assess.pipeline.verify import choose_motions
+from assess.pipeline.verify import RockedLevels, Sweep, choose_motions
 from assess.progress import SILENT, Progress
 from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance, PieceRef

@@ -200,9 +200,7 @@ def _sum_up(rows: Sequence[ItemResult], routes: RouteTables, held: Collection[in
     states = Counter(one.state for one in routes.routes)
     low, high = find_ends(sum_falls(counted))
     return State(
-        falls=sum(map(count_falls, counted)),
-        falls_low=low,
-        falls_high=high,
+        falls=sum(map(count_falls, counted)), falls_low=low, falls_high=high,
         apart=count_pieces(one for one in free if one.apart),
         classes=tuple(classes[risk] for risk in RiskClass),
         anchored=count_pieces(rows) - count_pieces(free),

@@ -76,9 +76,7 @@ def build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path, 
     for item, one in falls.fell.items():
         fell[item], is_known[item] = one[:draws], True
     return Results(
-        settings=assessment.settings,
-        provenance=build_provenance(assessment),
-        building=inventory.building,
+        settings=assessment.settings, provenance=build_provenance(assessment), building=inventory.building,
         floor_rows=tuple(
             _copy(
                 FloorRow, floor, elevation_m=floor.elevation, cells=dict(floor.cells),

@@ -10,8 +10,8 @@ import pytest
 from assess.fragility import lognormal_chance
 from assess.motion.suite import read_suite
 from assess.pipeline.annual import evaluate_annual
-from assess.pipeline.levels import Sweep
 from assess.pipeline.run import build_results, compute
+from assess.pipeline.verify import Sweep
 from assess.progress import SILENT
 from assess.rates import integrate_lognormal
 from assess.settings import Settings

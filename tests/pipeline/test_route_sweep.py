@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import assess
-from assess.pipeline import levels
+from assess.pipeline import verify
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.route_sweep import FINEST, JUMP, MOST_INSERTED, find_fragility, find_jumps, find_passing
 from assess.pipeline.run import build_results, compute
@@ -185,14 +185,14 @@ def test_values_are_inserted_at_a_jump_and_change_nothing_else(tmp_path, monkeyp
     plain = fragility(assessment, *asked)
     assert find_jumps(chances(plain))
     done: list[tuple[int, float]] = []
-    rock, made = levels.Sweep._rock, []
+    rock, made = verify.Sweep._rock, []
 
     def note(sweep, own, motions, factors, *rest):
         done.extend((int(own[0]), factor) for factor in factors)
         made.append(id(motions))
         return rock(sweep, own, motions, factors, *rest)
 
-    monkeypatch.setattr(levels.Sweep, "_rock", note)
+    monkeypatch.setattr(verify.Sweep, "_rock", note)
     fine = fragility(assessment, *asked, most_inserted=MOST_INSERTED)
     assert len(set(done)) == len(done)
     assert len(set(made)) == len({number for number, _ in done}) < len(made), "motions are made ready once"
