@@ -129,7 +129,19 @@ def build_anchors(
     piece, capacity = _list_pieces(items, weights), _list_numbers([one.bracket_capacity for one in items])
     pfa, spread = cases.pfa[governing], find_spread(cases)[governing]
     low, middle, high = (find_tension(**piece, acceleration=k) for k in _scatter(pfa, spread))
-    code, upward = _find_code(inventory, settings)
+    building, ground, code, upward = inventory.building, find_ground(inventory), np.full(len(items), np.nan), np.nan
+    peak = building.sds if building.sds is not None else building.ground_pga
+    if peak is not None:  # F_p/W of each piece, and the code's vertical acceleration over g
+        sds = peak / GRAVITY / (1.0 if building.sds is not None else PGA_OF_SDS)
+        by_floor, upward = {}, UPWARD * sds
+        for floor in inventory.floors:
+            place = ground.find_ratio(floor)
+            ratio = 1.0 if place is None else place  # where a height is not known, as at the roof, where F_p is largest
+            by_floor[floor.floor] = find_code_demand(
+                sds=sds, height_ratio=ratio, resonance=settings.anchor_resonance, strength=settings.anchor_strength,
+                importance=settings.anchor_importance, ductility=settings.ductility_reduction, period=building.period,
+            )  # fmt: skip
+        code = np.array([by_floor[one.floor] for one in items], dtype=np.float64)
     by_code = find_tension(**piece, acceleration=code, vertical=upward)
     weight, body = piece["weight"], {name: one for name, one in piece.items() if name != "breadth"}
     is_per_metre = np.array([one.is_per_metre for one in weights], dtype=np.bool_)
@@ -207,24 +219,6 @@ def _list_pieces(items: Sequence[Item], weights: Sequence[Weight]) -> dict[str, 
 
 def _list_numbers(values: Sequence[float | None]) -> FloatArray:
     return np.array(values, dtype=np.float64)
-
-
-def _find_code(inventory: Inventory, settings: Settings) -> tuple[FloatArray, float]:
-    """Return F_p/W of each piece and the code's vertical acceleration over g; NaN where S_DS is not known."""
-    building, ground = inventory.building, find_ground(inventory)
-    peak = building.sds if building.sds is not None else building.ground_pga
-    if peak is None:
-        return np.full(len(inventory.items), np.nan), np.nan
-    sds = peak / GRAVITY / (1.0 if building.sds is not None else PGA_OF_SDS)
-    by_floor = {}
-    for floor in inventory.floors:
-        place = ground.find_ratio(floor)
-        ratio = 1.0 if place is None else place  # where a height is not known, as at the roof, where F_p is largest
-        by_floor[floor.floor] = find_code_demand(
-            sds=sds, height_ratio=ratio, resonance=settings.anchor_resonance, strength=settings.anchor_strength,
-            importance=settings.anchor_importance, ductility=settings.ductility_reduction, period=building.period,
-        )  # fmt: skip
-    return np.array([by_floor[one.floor] for one in inventory.items], dtype=np.float64), UPWARD * sds
 
 
 # ---------------------------------------------------------------- what if some pieces were anchored

@@ -128,8 +128,6 @@ NEVER = AnnualRow(
 )  # fmt: skip
 """The annual row of what cannot happen."""
 
-# ---------------------------------------------------------------- routes and rooms
-
 
 def _evaluate_ways(scenes: Sequence[Scene], integral: Integral, doubtful: frozenset[int]) -> AnnualWays:
     """Evaluate the routes of which any segment is evaluated, and the rooms of the network, at each level.
@@ -164,8 +162,6 @@ def _evaluate_ways(scenes: Sequence[Scene], integral: Integral, doubtful: frozen
     rooms = {one.place: find(part.segments, part.when_cut_off(one.place)) for one, part in list_rooms(first)}
     return AnnualWays(routes, fail, rooms)
 
-
-# ---------------------------------------------------------------- the building
 
 LOWER = 6
 """Levels that are added below at a time."""
@@ -281,13 +277,9 @@ def _integrate(
 
 
 def _sum_up(
-    found: AnnualTables,
-    sweep: Sweep,
-    integral: Integral,
-    items: Mapping[int, AnnualRow],
-    fell: Mapping[int, BoolArray],
-    doubtful: Collection[int],
-) -> AnnualTables:
+    found: AnnualTables, sweep: Sweep, integral: Integral, items: Mapping[int, AnnualRow],
+    fell: Mapping[int, BoolArray], doubtful: Collection[int],
+) -> AnnualTables:  # fmt: skip
     """Return the tables with the sums of the building; of `doubtful` pieces the motions may be too weak.
 
     The number of pieces that fall is that of their own rates, its interval and its ends those of their falls, by the

@@ -148,12 +148,9 @@ def find_governing(adoption: Adoption, case_item: NDArray[np.intp], peak: FloatA
 
 
 def choose_items(
-    verify: str,
-    methods: Sequence[Method],
-    outcomes: Mapping[str, Outcome],
-    case_item: NDArray[np.intp],
+    verify: str, methods: Sequence[Method], outcomes: Mapping[str, Outcome], case_item: NDArray[np.intp],
     has_route: BoolArray,
-) -> BoolArray:
+) -> BoolArray:  # fmt: skip
     """Return which items (m,) are to be simulated; `has_route` (m,) tells which of them stand on a route.
 
     "high": those that are high or very high by one of the `methods` that select under any of their motions, those with
@@ -190,14 +187,9 @@ def is_square(item: Item) -> bool:
 
 
 def unite_axes(
-    adoption: Adoption,
-    outcomes: Mapping[str, Outcome],
-    cases: Cases,
-    inventory: Inventory,
-    case_item: NDArray[np.intp],
-    case_demand: Sequence[Demand],
-    settings: Settings,
-) -> tuple[Adoption, Mapping[int, BoolArray]]:
+    adoption: Adoption, outcomes: Mapping[str, Outcome], cases: Cases, inventory: Inventory,
+    case_item: NDArray[np.intp], case_demand: Sequence[Demand], settings: Settings,
+) -> tuple[Adoption, Mapping[int, BoolArray]]:  # fmt: skip
     """Return the adoption with the chance of a fall along either axis, and of each such item in which draws it falls.
 
     Of parallel motions of an axis that with the larger chance counts. Only where both axes are simulated and adopted.
@@ -230,14 +222,9 @@ def unite_axes(
 
 
 def build_falls(
-    inventory: Inventory,
-    adoption: Adoption,
-    outcomes: Mapping[str, Outcome],
-    governing: NDArray[np.intp],
-    settings: Settings,
-    either_axis: Mapping[int, BoolArray],
-    held: BoolArray,
-) -> Falls:
+    inventory: Inventory, adoption: Adoption, outcomes: Mapping[str, Outcome], governing: NDArray[np.intp],
+    settings: Settings, either_axis: Mapping[int, BoolArray], held: BoolArray,
+) -> Falls:  # fmt: skip
     """Return how the pieces of an inventory fall: a blank axis takes the outcomes of the governing one.
 
     A piece of `either_axis` (by its index) takes those instead: in which draws it falls along either axis. `held` tells

@@ -74,13 +74,10 @@ def sum_draws(assessment: Assessment, results: Results, *, progress: Progress = 
         people_blocked = sum((people[route] * draws for route, draws in blocked.items()), none)
         routes_blocked = sum((draws.astype(np.int64) for draws in blocked.values()), none)
     apart = {route: chance for route, chance in chances.items() if route not in blocked}
-
-    def expect(of: Mapping[str, float]) -> float:
-        return float(sum(people[route] * chance for route, chance in of.items()))
-
+    expected, alone = (float(sum(people[route] * one for route, one in of.items())) for of in (chances, apart))
     return DrawSums(
         falls=fallen, people_blocked=people_blocked, routes_blocked=routes_blocked, joint_routes=tuple(blocked),
-        people_expected=expect(chances), routes_expected=sum(chances.values()), people_apart=expect(apart),
+        people_expected=expected, routes_expected=sum(chances.values()), people_apart=alone,
         routes_apart=sum(apart.values()),
         people_not_known=sum(number for route, number in people.items() if route not in chances),
     )  # fmt: skip

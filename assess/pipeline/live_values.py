@@ -14,7 +14,7 @@ from assess.i18n import gettext
 from assess.methods import ALIKE, Cases, adopted_formula, paper_formula
 from assess.model import AXES, Inventory, Item
 from assess.pipeline.assessment import find_can_rock
-from assess.pipeline.demand import Demand, Demands, build_demands
+from assess.pipeline.demand import Demand, build_demands
 from assess.pipeline.known_ground import find_ground
 from assess.pipeline.verify import find_peak
 from assess.risk import RiskClass, classify
@@ -39,7 +39,16 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
     settings = Settings()
     kind = scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands = build_demands(inventory, kind, ductility_reduction=settings.ductility_reduction)
-    is_live, formula = set(map(id, _list_live(inventory, demands))), adopted_formula(inventory.building.class_by)
+    # the sheet knows the demands of typed peaks, and of the ground where no floor has its own motion
+    all_demands = [one for parallel in demands.values() for one in parallel]
+    given = [one for one in all_demands if one.source == "given" and one.drawn]
+    live = [one for one in given if one.drawn and one.drawn.target.meets == "peaks"]
+    if find_ground(inventory).site is None:
+        followed = [one for one in given if one.drawn and one.drawn.record is None]
+        by_beam = all_demands if all(one.source == "beam" for one in all_demands) else []
+        is_numbered = inventory.building.storeys and not any((one.elevation or 0.0) > 0 for one in inventory.floors)
+        live += [one for one in (*followed, *by_beam) if not is_numbered or one.floor.elevation is not None]
+    is_live, formula = set(map(id, live)), adopted_formula(inventory.building.class_by)
     name, unit = formula.ruled_by, {"pfa": GRAVITY, "pfv": VELOCITY["cm/s"]}[formula.ruled_by]  # as the sheet compares
     options: list[list[Demand]] = []  # the motions of each piece; none where the sheet cannot know one of them
     for item in inventory.items:
@@ -67,20 +76,6 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
             chances = ("" if np.isnan(value) else value for value in own)
             rows.append([ratio, motion.pfa / GRAVITY, *chances, *shown, gettext(YES if rocks else NO)])
     return rows
-
-
-def _list_live(inventory: Inventory, demands: Demands) -> list[Demand]:
-    """Return the demands that the sheet knows: of typed peaks, and of the ground where no floor has its own motion."""
-    every = [one for parallel in demands.values() for one in parallel]
-    given = [one for one in every if one.source == "given" and one.drawn]
-    known = [one for one in given if one.drawn and one.drawn.target.meets == "peaks"]
-    if find_ground(inventory).site is not None:
-        return known
-    followed = [one for one in given if one.drawn and one.drawn.record is None]
-    by_beam = every if all(one.source == "beam" for one in every) else []
-    is_numbered = inventory.building.storeys and not any((one.elevation or 0.0) > 0 for one in inventory.floors)
-    placed = [one for one in (*followed, *by_beam) if not is_numbered or one.floor.elevation is not None]
-    return [*known, *placed]
 
 
 def _build_cases(items: Sequence[Item], motions: Sequence[Demand | None]) -> Cases:

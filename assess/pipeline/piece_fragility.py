@@ -158,14 +158,9 @@ class PieceFragilities:
 
 
 def find_piece_fragilities(
-    assessment: Assessment,
-    *,
-    by: By = "item",
-    im: Measure = "pfa",
-    levels: Sequence[float] | None = None,
-    jobs: int | None = None,
-    progress: Progress = SILENT,
-) -> PieceFragilities:
+    assessment: Assessment, *, by: By = "item", im: Measure = "pfa", levels: Sequence[float] | None = None,
+    jobs: int | None = None, progress: Progress = SILENT,
+) -> PieceFragilities:  # fmt: skip
     """Find how likely pieces overturn at each level of their floor's PFA or PFV, and fit lognormals to it.
 
     * `assessment`: from `assess.pipeline.run.compute`, simulated or not; its settings give the number of draws and
@@ -226,9 +221,6 @@ def find_piece_fragilities(
         )  # fmt: skip
 
     return progress.wait_for(find)
-
-
-# ---------------------------------------------------------------- rocking
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -101,13 +101,9 @@ class Fragility:
 
 
 def find_fragility(
-    assessment: Assessment,
-    values: Sequence[float],
-    *,
-    most_inserted: int = 0,
-    jobs: int | None = None,
+    assessment: Assessment, values: Sequence[float], *, most_inserted: int = 0, jobs: int | None = None,
     progress: Progress = SILENT,
-) -> Fragility:
+) -> Fragility:  # fmt: skip
     """Find how likely each route is blocked at each PFA.
 
     * `assessment`: of a building with routes, simulated or not; its settings give the number of the motions and their
@@ -166,9 +162,6 @@ def find_passing(values: Sequence[float], chances: Sequence[float], level: float
         return values[at - 1], values[at]
     share = (level - chances[at - 1]) / (chances[at] - chances[at - 1])
     return (values[at - 1] + share * (values[at] - values[at - 1]),) * 2
-
-
-# ---------------------------------------------------------------- the values
 
 
 _Level = tuple[Scene, Mapping[str, Judgement]]

@@ -33,9 +33,10 @@ from assess.pipeline.remarks import remark
 from assess.pipeline.schedule import build_schedule, list_entries
 from assess.pipeline.series import build_series, write_series
 from assess.pipeline.tables import add_annual, build_rows, list_demands
-from assess.pipeline.verify import choose_motions, find_peak, find_uncertainty, remark_suite, verify
+from assess.pipeline.verify import choose_motions, find_peak, remark_suite, verify
 from assess.progress import SILENT, Listener, Progress
 from assess.results import Results
+from assess.rocking.draws import Uncertainty
 from assess.route_results import RouteTables
 from assess.routes.walls import find_walls, remark_on_walls
 from assess.settings import CLASS_BY, SCENARIOS, Settings, change_settings
@@ -102,14 +103,9 @@ def run(
 
 
 def compute(
-    inventory: Inventory,
-    settings: Settings,
-    *,
-    suite: "Suite | None" = None,
-    methods: Sequence[Method] = (),
-    jobs: int | None = None,
-    progress: Progress = SILENT,
-) -> Assessment:
+    inventory: Inventory, settings: Settings, *, suite: "Suite | None" = None, methods: Sequence[Method] = (),
+    jobs: int | None = None, progress: Progress = SILENT,
+) -> Assessment:  # fmt: skip
     """Return the arrays of a run; parameters and errors are those of `run`."""
     every = (*all_methods(), *methods)  # in the order of reports
     for name in (fill("key"), fill("title")):
@@ -137,13 +133,9 @@ def compute(
 
 
 def _compute(
-    inventory: Inventory,
-    settings: Settings,
-    suite: "Suite | None",
-    every: tuple[Method, ...],
-    jobs: int | None,
+    inventory: Inventory, settings: Settings, suite: "Suite | None", every: tuple[Method, ...], jobs: int | None,
     progress: Progress,
-) -> Assessment:
+) -> Assessment:  # fmt: skip
     scenario = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     filled = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction, progress=progress)
     demands = scale_demands(filled, settings.scale)
@@ -182,12 +174,9 @@ def _compute(
 
 
 def build_results(
-    assessment: Assessment,
-    *,
-    figures: bool = True,
-    series_folder: "str | Path | None" = None,
+    assessment: Assessment, *, figures: bool = True, series_folder: "str | Path | None" = None,
     progress: Progress = SILENT,
-) -> Results:
+) -> Results:  # fmt: skip
     """Return the tables of a run; parameters and errors are those of `run`."""
     demands, is_temporary = list_demands(assessment), figures and series_folder is None
     if series_folder is not None:
@@ -252,6 +241,8 @@ def _pair(
     numbers = {kind: at for at, kind in enumerate(dict.fromkeys(kinds))}
     shaken = inventory if any(one.site for one in case_demand) else replace(inventory, site_ground=None)
     names = number_pieces(inventory, settings)
+    given = {"motion": building.motion_uncertainty, "piece": building.piece_uncertainty}
+    drawn: dict[str, Any] = {name: one for name, one in given.items() if one is not None}
 
     def column(values: Iterable[Any], kind: type = np.float64) -> NDArray[Any]:
         return np.array(list(values), dtype=kind)
@@ -273,7 +264,7 @@ def _pair(
         wall=column(walls, np.int8),
         dispersion=column(demand.dispersion for demand in case_demand),
         peak=column(map(find_peak, case_demand)),
-        uncertainty=find_uncertainty(building),
+        uncertainty=Uncertainty(**drawn),
         earthquakes=find_earthquakes(shaken, settings),
     )
     return column((at for at, _, _ in pairs), np.intp), case_demand, cases

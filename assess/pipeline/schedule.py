@@ -62,9 +62,6 @@ def count_falls(one: ItemResult) -> float:
     return 0.0 if one.apart else one.adopted.probability * one.item.quantity
 
 
-# ---------------------------------------------------------------- order
-
-
 def list_entries(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[list[ItemResult]]:
     """Return the pieces of each entry of the schedule, in its order.
 
@@ -142,9 +139,6 @@ def _list_together(routes: Sequence[RouteRow]) -> list[frozenset[int]]:
     return [one for one in found if len(one) > 1]
 
 
-# ---------------------------------------------------------------- entries
-
-
 def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> WorkRow:
     """Return the work on alike pieces: the largest forces that their fixings have to carry.
 
@@ -186,9 +180,6 @@ def choose_detail(item: ItemRow) -> str:
     if item.against_wall is False or any(word in named for word in FILES):
         return AT_BASE
     return AT_WALL
-
-
-# ---------------------------------------------------------------- before and after
 
 
 def _sum_up(rows: Sequence[ItemResult], routes: RouteTables, held: Collection[int]) -> State:

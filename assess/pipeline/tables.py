@@ -101,9 +101,6 @@ def build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path, 
     )  # fmt: skip
 
 
-# ---------------------------------------------------------------- floors and their motions
-
-
 def list_demands(assessment: Assessment) -> list[Demand]:
     """Return the motions of every floor, along X and then along Y: the order of `Results.motions`."""
     return [
@@ -144,9 +141,6 @@ def build_motions(assessment: Assessment, demands: Sequence[Demand]) -> tuple[Mo
         )  # fmt: skip
         rows.append(row)
     return tuple(rows)
-
-
-# ---------------------------------------------------------------- furniture
 
 
 def build_items(assessment: Assessment, routes: "RouteTables") -> tuple[ItemRow, ...]:
@@ -193,9 +187,6 @@ def add_annual(tables: "RouteTables", ways: AnnualWays) -> "RouteTables":
     )
 
 
-# ---------------------------------------------------------------- the worked example
-
-
 def choose_example(assessment: Assessment) -> int | None:
     """Return the index of the piece that is worked through: the worst that is free-standing and simulated.
 
@@ -227,9 +218,6 @@ def work_example(index: int, assessment: Assessment) -> Iterator[WorkedMethod]:
             flags=tuple(flag for flag, array in outcome.flags.items() if array[case]),
         )  # fmt: skip
         yield WorkedMethod(method.key, tuple(method.steps(example)), value)
-
-
-# ---------------------------------------------------------------- provenance
 
 
 def build_provenance(assessment: Assessment) -> Provenance:

@@ -17,7 +17,7 @@ from assess.errors import InputError, Problem
 from assess.i18n import count, fill, join
 from assess.methods import Alike, Cases, Joint, Motions, Outcome, adopted_formula, simulation
 from assess.methods.simulate import LOOKS, make_batches, may_slide, rock_cases, rock_draws, run_side_by_side
-from assess.model import Building, Inventory
+from assess.model import Inventory
 from assess.motion.assumed import RATIO_SCATTER
 from assess.motion.floor_medians import SCATTER
 from assess.motion.target_fit import measure_peaks
@@ -27,7 +27,7 @@ from assess.pipeline.city_draws import number_building
 from assess.pipeline.demand import Demand, Demands
 from assess.pipeline.ensembles import FloorEnsemble, SuiteEnsemble, build_ensembles
 from assess.progress import SILENT, Progress, Stage
-from assess.rocking.draws import PEAK, Uncertainty
+from assess.rocking.draws import PEAK
 from assess.routes.chances import Falls
 from assess.settings import AUTO, Settings, count_processors
 from assess.units import GRAVITY, ROUNDING
@@ -37,17 +37,6 @@ if TYPE_CHECKING:
 
 MOST_PAIRS = 400_000_000
 """Results of one motion on one piece that are kept at most: they take five bytes each."""
-
-
-def find_uncertainty(building: Building) -> Uncertainty:
-    """Return what is taken to be uncertain on floors with a record: what the workbook says, else the defaults.
-
-    On other floors the dispersion of the motion is that of their `Demand`.
-    """
-    default, given, piece = Uncertainty(), building.motion_uncertainty, building.piece_uncertainty
-    return Uncertainty(
-        motion=default.motion if given is None else given, piece=default.piece if piece is None else piece
-    )
 
 
 def find_peak(demand: Demand) -> float:
@@ -61,14 +50,9 @@ def find_peak(demand: Demand) -> float:
 
 
 def choose_motions(
-    cases: Cases,
-    chosen: BoolArray,
-    case_demand: tuple[Demand, ...],
-    demands: Demands,
-    inventory: Inventory,
-    settings: Settings,
-    suite: "Suite | None",
-) -> Cases:
+    cases: Cases, chosen: BoolArray, case_demand: tuple[Demand, ...], demands: Demands, inventory: Inventory,
+    settings: Settings, suite: "Suite | None",
+) -> Cases:  # fmt: skip
     """Return the cases with the motions under which those `chosen` (n,) that can rock are to be integrated.
 
     Those that may slide, too stocky ones too, are to slide under the same. In a city every building is drawn
@@ -114,14 +98,9 @@ WEAK = fill("Simulation may raise a class there, but not lower it. Scale the mot
 
 
 def verify(
-    cases: Cases,
-    case_item: NDArray[np.intp],
-    case_demand: tuple[Demand, ...],
-    settings: Settings,
-    *,
-    jobs: int | None = None,
-    progress: Progress = SILENT,
-) -> Outcome:
+    cases: Cases, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...], settings: Settings, *,
+    jobs: int | None = None, progress: Progress = SILENT,
+) -> Outcome:  # fmt: skip
     """Integrate the cases that have motions; `jobs` threads, one for each processor by default.
 
     Raises CancelledError if the caller stops the work; InputError if the results would need too much memory.

@@ -146,14 +146,9 @@ class Couplings:
 
 
 def build_couplings(
-    falls: Falls,
-    keys: Sequence[Key],
-    seed: int,
-    of_all: Callable[[], Couplings] | None = None,
-    progress: Progress = SILENT,
-    *,
-    unconfirmed_fall: bool = False,
-) -> Couplings:
+    falls: Falls, keys: Sequence[Key], seed: int, of_all: Callable[[], Couplings] | None = None,
+    progress: Progress = SILENT, *, unconfirmed_fall: bool = False,
+) -> Couplings:  # fmt: skip
     """Return how the pieces of `keys` fall together; draws depend on `seed` and on the piece alone.
 
     `of_all` returns the couplings of more pieces, whose draws are shared wherever the combinations of `keys` are drawn.

@@ -47,13 +47,9 @@ UNKNOWN = 0.5
 
 
 def evaluate_routes(
-    inventory: Inventory,
-    obstructions: Sequence[Obstructions],
-    falls: Falls,
-    settings: Settings,
-    *,
+    inventory: Inventory, obstructions: Sequence[Obstructions], falls: Falls, settings: Settings, *,
     progress: Progress = SILENT,
-) -> RouteTables:
+) -> RouteTables:  # fmt: skip
     """Return what is to be expected of the routes of an inventory; nothing where it has none.
 
     `obstructions`: its segments, from `assess.routes.obstructions.find_obstructions`. `falls`: how its pieces fall.
@@ -170,14 +166,9 @@ def _route(scene: Scene, name: str, rows: Sequence[SegmentRow]) -> RouteRow:
 
 
 def find_joint_draws(
-    inventory: Inventory,
-    obstructions: Sequence[Obstructions],
-    falls: Falls,
-    settings: Settings,
-    runs: int,
-    *,
+    inventory: Inventory, obstructions: Sequence[Obstructions], falls: Falls, settings: Settings, runs: int, *,
     progress: Progress = SILENT,
-) -> dict[str, BoolArray]:
+) -> dict[str, BoolArray]:  # fmt: skip
     """Return of each route with joint outcomes in which of `runs` draws it is blocked, (runs,), if all anchors hold.
 
     A route has none where one of the pieces that reach it was not simulated, is not confirmed, or was simulated in

@@ -16,13 +16,9 @@ Fixed = frozenset[int]
 
 
 def find_fixes(
-    couplings: Couplings,
-    lanes: Mapping[int, Obstructions],
-    is_blocked: IsBlocked,
-    risk: float,
-    z: float = 0.0,
+    couplings: Couplings, lanes: Mapping[int, Obstructions], is_blocked: IsBlocked, risk: float, z: float = 0.0,
     progress: Progress = SILENT,
-) -> tuple[list[tuple[int, float, float]], bool]:
+) -> tuple[list[tuple[int, float, float]], bool]:  # fmt: skip
     """Return the pieces to fix, in order of their gain, and whether a route can be brought under `risk` [-].
 
     Each comes with its gain and the chance left [-]. At every step the piece is taken that lowers the chance most;
@@ -81,13 +77,9 @@ class _Sample:
     """Draws of which pieces fall, and when the route is blocked in them with some pieces fixed; results are kept."""
 
     def __init__(
-        self,
-        draws: Draws,
-        keys: Iterable[Key],
-        lanes: Mapping[int, Obstructions],
-        is_blocked: IsBlocked,
+        self, draws: Draws, keys: Iterable[Key], lanes: Mapping[int, Obstructions], is_blocked: IsBlocked,
         progress: Progress,
-    ) -> None:
+    ) -> None:  # fmt: skip
         self._draws, self._lanes, self._is_blocked, self._progress = draws, lanes, is_blocked, progress
         self._reach = {at: frozenset(item for item, _ in lane.keys) for at, lane in lanes.items()}
         reaching = frozenset[int]().union(*self._reach.values())

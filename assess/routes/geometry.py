@@ -60,12 +60,9 @@ class Shape:
 
 
 def build_shapes(
-    items: Sequence[Item],
-    floors: Collection[str],
-    progress: Progress = SILENT,
-    *,
+    items: Sequence[Item], floors: Collection[str], progress: Progress = SILENT, *,
     away: Mapping[int, float | None] = MappingProxyType({}),
-) -> dict[int, Shape]:
+) -> dict[int, Shape]:  # fmt: skip
     """Return the shapes of the pieces on some floors that have a position, by their index.
 
     `away` holds, of the pieces against a wall, the direction in which each falls [deg]; None: that is not known.

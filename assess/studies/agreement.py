@@ -36,9 +36,6 @@ def evaluate_formulas(cases: Cases, settings: Settings) -> dict[str, FloatArray]
     return {PRINTED: printed} | {key: outcome.value for key, outcome in outcomes.items()}
 
 
-# ---------------------------------------------------------------- formula against integration
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Agreement:
     """How n chances by a formula agree with those by direct integration.
@@ -96,26 +93,19 @@ def correlate_ranks(one: Sequence[float] | FloatArray, other: Sequence[float] | 
     return float(spearmanr(one, other).statistic)
 
 
-# ---------------------------------------------------------------- the channels of all buildings
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Compared:
-    """The trials of a channel with the values of the formulas, by key: (a, b) each."""
+    """The trials of a channel with the values of the formulas, by key: (a, b) each.
+
+    `factors` (a,) are those by which the record is scaled [-]. `ratio` is PFV/PFA of the record [s]: the lower the
+    frequency of the motion, the larger.
+    """
 
     building: Building
     trials: Trials
     formulas: Mapping[str, FloatArray]
-
-    @property
-    def factors(self) -> FloatArray:
-        """Factors by which the record is scaled [-], (a,)."""
-        return np.asarray(self.trials.pfa / self.trials.channel.read().pfa)
-
-    @property
-    def ratio(self) -> float:
-        """PFV/PFA of the record [s]: the lower the frequency of the motion, the larger."""
-        return float(self.trials.pfv[0] / self.trials.pfa[0])
+    factors: FloatArray
+    ratio: float
 
 
 Chosen = Callable[[Compared], BoolArray]
@@ -132,7 +122,9 @@ def every_case(one: Compared, rows: int | slice = slice(0, RECORDED)) -> BoolArr
 def evaluate_trials(building: Building, trials: Trials, options: Options) -> Compared:
     """Return trials with the values of the formulas."""
     values = evaluate_formulas(trials.cases, options.settings)
-    return Compared(building, trials, {key: value.reshape(trials.fallen.shape) for key, value in values.items()})
+    formulas = {key: value.reshape(trials.fallen.shape) for key, value in values.items()}
+    factors = np.asarray(trials.pfa / trials.channel.read().pfa)
+    return Compared(building, trials, formulas, factors, float(trials.pfv[0] / trials.pfa[0]))
 
 
 def rock_all(options: Options) -> list[Compared]:

@@ -124,9 +124,6 @@ def find_levels(building: Building) -> dict[Channel, list[float]]:
     return found
 
 
-# ---------------------------------------------------------------- direct integration
-
-
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Trials:
     """The response of the blocks to the motions of one channel.

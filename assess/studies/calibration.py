@@ -115,9 +115,6 @@ def list_beams() -> list[FloorMotion]:
     return [FloorMotion(one, Beam(period, place)) for one in grounds for period in PERIODS for place in PLACES]
 
 
-# ---------------------------------------------------------------- what falls
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Tried:
     """The response of the blocks to a floor motion at all `LEVELS`, and to the motions generated for it.

@@ -255,20 +255,14 @@ def rank_surfaces(points: Points, candidates: Iterable[Candidate] = CANDIDATES) 
     surfaces = [fit_surface(one, points) for one in candidates]
     best = min((one.left_out for one in surfaces), key=lambda one: one.error)
     level = [surface.left_out.is_level(best) for surface in surfaces]
-
-    def key(at: int) -> tuple[bool, int, float]:
-        one = surfaces[at]
-        return not level[at], len(one.coefficients) if level[at] else 0, one.left_out.error
-
-    by_r2 = _find_places([-one.adjusted_r2 for one in surfaces])
-    by_aic = _find_places([one.aic for one in surfaces])
-    order = sorted(range(len(surfaces)), key=key)
-    return tuple(Ranked(surfaces[at], place, level[at], by_r2[at], by_aic[at]) for place, at in enumerate(order, 1))
-
-
-def _find_places(values: Sequence[float]) -> list[int]:
-    order = sorted(range(len(values)), key=values.__getitem__)
-    return [place for _, place in sorted((at, place) for place, at in enumerate(order, 1))]
+    values = np.array([(-one.adjusted_r2, one.aic) for one in surfaces])
+    places = 1 + np.argsort(np.argsort(values, axis=0, kind="stable"), axis=0)  # by adjusted R2 and by AIC
+    ranks = [
+        (not is_level, len(one.coefficients) if is_level else 0, one.left_out.error, at)
+        for at, (one, is_level) in enumerate(zip(surfaces, level, strict=True))
+    ]
+    order = [at for *_, at in sorted(ranks)]
+    return tuple(Ranked(surfaces[at], place, level[at], *places[at].tolist()) for place, at in enumerate(order, 1))
 
 
 # ---------------------------------------------------------------- the probit
@@ -424,13 +418,6 @@ class Fits:
         """Names of the groups, in the order of the errors of those left out."""
         return [str(one) for one in np.unique(self.points.group)]
 
-    @property
-    def medium_at_rest(self) -> float:
-        """Share of the cases with PFA below g B/H that the probit puts into class medium or higher [-]."""
-        start = GRAVITY * self.counts.breadth / self.counts.height
-        chances = self.probit.probit.evaluate(self.counts.cases)[self.counts.pfa < start * (1 - ROUNDING)]
-        return float(np.mean(chances >= LIMITS[0]))
-
 
 def fit_all(compared: Sequence[Compared], options: Options) -> Fits:
     """Fit everything to the trials of all channels at the common values of PFA."""
@@ -557,6 +544,8 @@ def collect(fits: Fits) -> dict[str, object]:
     """Return what the page shows."""
     best, values = fits.best.surface, dict(zip(EQUATION_8.powers, fits.equation_8.surface.coefficients, strict=True))
     named = {CONSTANT: "", EQUATION_8: " (eq. 8)", best.candidate: " (smallest error)"}
+    start = GRAVITY * fits.counts.breadth / fits.counts.height
+    at_rest = fits.probit.probit.evaluate(fits.counts.cases)[fits.counts.pfa < start * (1 - ROUNDING)]
     again = {CONSTANT: "", EQUATION_8: " (equation (8) fitted again)", best.candidate: " (smallest error)"}
     coefficients: list[dict[str, object]] = []
     for name, letter in (("b0", "b₀"), ("b1", "b₁"), ("b2", "b₂")):
@@ -576,7 +565,7 @@ def collect(fits: Fits) -> dict[str, object]:
         ],
         "printed": {name: getattr(COEFFICIENTS, name) for name in LETTERS},
         "fitted": [values[powers] for powers in LETTERS.values()],
-        "coefficients": coefficients,
+        "coefficients": coefficients, "medium_at_rest": float(np.mean(at_rest >= LIMITS[0])),
         "models": [
             *((f"{title} (not fitted)", 0, left_out) for title, left_out in fits.published.items()),
             *(

@@ -24,31 +24,23 @@ class Rocker:
     """A body that rocks on a base which may be narrower than its plan.
 
     * `half_base`, `centre`: half the base on which it rocks, and the height of its centre of gravity [m].
-    * `inertia`: moment of inertia about the centre of gravity over the mass [m2].
+    * `critical_angle`, `frequency_parameter`: alpha at which it falls over [rad], and p [rad/s], p2 = m g R / I0.
+    * `restitution`: angular velocity after an impact over that before it [-]: 1 - 2 m R2 sin2(alpha) / I0.
     """
 
     half_base: float
     centre: float
-    inertia: float
+    critical_angle: float
+    frequency_parameter: float
+    restitution: float
 
-    @property
-    def critical_angle(self) -> float:
-        """Angle alpha at which it falls over [rad]."""
-        return math.atan(self.half_base / self.centre)
-
-    @property
-    def frequency_parameter(self) -> float:
-        """Frequency parameter p [rad/s]: p2 = m g R / I0."""
-        return math.sqrt(GRAVITY * self._squared_radius**0.5 / (self.inertia + self._squared_radius))
-
-    @property
-    def restitution(self) -> float:
-        """Angular velocity after an impact over that before it [-]: 1 - 2 m R2 sin2(alpha) / I0."""
-        return 1 - 2 * self.half_base**2 / (self.inertia + self._squared_radius)
-
-    @property
-    def _squared_radius(self) -> float:
-        return self.half_base**2 + self.centre**2
+    @classmethod
+    def of(cls, half_base: float, centre: float, inertia: float) -> "Rocker":
+        """Build one; `inertia` is the moment of inertia about the centre of gravity over the mass [m2]."""
+        squared_radius = half_base**2 + centre**2
+        p = math.sqrt(GRAVITY * squared_radius**0.5 / (inertia + squared_radius))
+        restitution = 1 - 2 * half_base**2 / (inertia + squared_radius)
+        return cls(half_base, centre, math.atan(half_base / centre), p, restitution)
 
     @property
     def first_rebound(self) -> float:
@@ -96,7 +88,7 @@ def list_released() -> list[ReleasedBlock]:
     for row in read_facts("released_blocks"):
         b, h, share = (float(row[name]) for name in ("half_base_m", "half_height_m", "base_correction"))
         inertia = (b**2 + h**2) / 3  # of the uniform block: (B2 + H2) / 12
-        found.append(ReleasedBlock(row["block"], share, Rocker(b, h, inertia), Rocker(share * b, h, inertia)))
+        found.append(ReleasedBlock(row["block"], share, Rocker.of(b, h, inertia), Rocker.of(share * b, h, inertia)))
     return found
 
 

@@ -126,13 +126,9 @@ STARTS = ("|", "* ", "#", "![")
 
 
 def write_finding(
-    study: str,
-    values: Mapping[str, object],
-    *,
-    tables: Mapping[str, Table],
-    figures: Mapping[str, bytes],
+    study: str, values: Mapping[str, object], *, tables: Mapping[str, Table], figures: Mapping[str, bytes],
     files: Mapping[str, str] | None = None,
-) -> Finding:
+) -> Finding:  # fmt: skip
     """Return the results of a study: its tables, figures and files, and the blocks of its template for `values`."""
     blocks = {name: render_block(study, name, **values) for name in ("page", "overview", "summary", "failures")}
     blocks |= {name: [line for line in blocks[name] if line] for name in ("summary", "failures")}

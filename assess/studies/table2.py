@@ -142,6 +142,16 @@ def compare(compared: Sequence[Compared]) -> Comparison:
             met, fallen = pool(own, key)
             falls = fallen >= own[0].trials.runs / 2
             criteria[name, key] = Criterion(_share(met[falls] == 0), _share(met[~falls] == 1))
+    pairs = []
+    for one, other in combinations(compared, 2):
+        a, b = one.trials.channel, other.trials.channel
+        if (a.building, a.level) != (b.building, b.level):
+            continue
+        chances = {key: (one.formulas[key], other.formulas[key]) for key in FORMULAS}
+        chances[INTEGRATION] = one.trials.risk, other.trials.risk
+        for at, pfa in enumerate(TOGETHER, FIRST_TOGETHER):
+            apart = {key: float(np.nanmean(np.abs(x[at] - y[at]))) for key, (x, y) in chances.items()}
+            pairs.append(Pair(a.building, a.level, (a.name, b.name), a.axis == b.axis, pfa, apart))
     fallen = pool(compared, OR, is_at_rest)[1]
     return Comparison(
         agreements=agreements,
@@ -154,7 +164,7 @@ def compare(compared: Sequence[Compared]) -> Comparison:
             above={key: _share(pool(compared, key, is_at_rest)[0] >= LIMITS[0]) for key in FORMULAS},
             above_by_integration=_share(fallen >= LIMITS[0] * compared[0].trials.runs),
         ),
-        pairs=_find_pairs(compared),
+        pairs=pairs,
     )
 
 
@@ -167,21 +177,6 @@ def _agree_all(own: Sequence[Compared], chosen: Chosen, *, uncertain: bool) -> d
 
 def _share(found: BoolArray) -> float:
     return float(found.mean()) if found.size else float("nan")
-
-
-def _find_pairs(compared: Sequence[Compared]) -> list[Pair]:
-    """Return every two channels of a floor at each PFA of `TOGETHER`."""
-    found = []
-    for one, other in combinations(compared, 2):
-        a, b = one.trials.channel, other.trials.channel
-        if (a.building, a.level) != (b.building, b.level):
-            continue
-        pairs = {key: (one.formulas[key], other.formulas[key]) for key in FORMULAS}
-        pairs[INTEGRATION] = one.trials.risk, other.trials.risk
-        for at, pfa in enumerate(TOGETHER, FIRST_TOGETHER):
-            apart = {key: float(np.nanmean(np.abs(x[at] - y[at]))) for key, (x, y) in pairs.items()}
-            found.append(Pair(a.building, a.level, (a.name, b.name), a.axis == b.axis, pfa, apart))
-    return found
 
 
 CHANNELS = (
@@ -260,9 +255,6 @@ def _paint(found: Comparison, figure: Any) -> None:
     axes.legend(fontsize=6, frameon=False)
 
 
-# ---------------------------------------------------------------- the page: every conclusion follows from the numbers
-
-
 def collect(compared: Sequence[Compared], found: Comparison, options: Options) -> dict[str, object]:
     """Return what the page shows."""
     names = list(by_building(compared))
@@ -273,10 +265,11 @@ def collect(compared: Sequence[Compared], found: Comparison, options: Options) -
     block = int(off.argmin())  # that nearest to the piece of the options
     pairs: list[dict[str, object]] = []
     for building, is_along in dict.fromkeys((one.building, one.is_along) for one in found.pairs):
-        own = [one.apart for one in found.pairs if (one.building, one.is_along) == (building, is_along)]
-        means = [float(np.mean([one[key] for one in own])) for key in (*FORMULAS, INTEGRATION)]
-        closer = sum(one[INTEGRATION] < one[KANEKO] for one in own)
-        pairs.append({"building": building, "is_along": is_along, "count": len(own), "means": means, "closer": closer})
+        apart = [one.apart for one in found.pairs if (one.building, one.is_along) == (building, is_along)]
+        means = [float(np.mean([one[key] for one in apart])) for key in (*FORMULAS, INTEGRATION)]
+        closer = sum(one[INTEGRATION] < one[KANEKO] for one in apart)
+        of = {"building": building, "is_along": is_along, "count": len(apart)}
+        pairs.append(of | {"means": means, "closer": closer})
     return {
         "OR": OR, "KANEKO": KANEKO, "FEMA": FEMA, "NOTHING": NOTHING, "ALL": ALL, "INTEGRATION": INTEGRATION,
         "formulas": FORMULAS, "criteria": CRITERIA, "ratios": RATIOS, "heights": HEIGHTS, "levels": LEVELS,
@@ -286,22 +279,21 @@ def collect(compared: Sequence[Compared], found: Comparison, options: Options) -
         "correlation": correlate_ranks(found.biases[OR], found.ratios),
         "static": [found.criteria[name, STATIC] for name in names],
         "japan": [found.criteria[name, JAPAN] for name in names],
-        "buildings": [_describe_building(own) for own in by_building(compared).values()], "pairs": pairs,
+        "buildings": [
+            {
+                "building": own[0].building, "channels": len(own), "ratios": [one.ratio for one in own],
+                "factors": [one.factors[at] for one in own for at in (0, len(LEVELS) - 1)],
+                "peaks": [one.trials.channel.read().pfa / GRAVITY for one in own],
+                "mean_pfa": [one.trials.mean_pfa for one in own], "mean_pfv": [one.trials.mean_pfv for one in own],
+                "none": float(np.mean([one.trials.fallen[: len(LEVELS)] == 0 for one in own])),
+                "records": [
+                    float(np.mean([one.trials.fell_in_record[LEVELS.index(at)] for one in own])) for at in RECORDS_AT
+                ],
+            }
+            for own in by_building(compared).values()
+        ], "pairs": pairs,
         "block": block, "size": [float(one[block] / LENGTH["cm"]) for one in (trials.breadth, trials.height)],
         "shown": SHOWN, "at": LEVELS.index(SHOWN), **collect_published(),
-    }  # fmt: skip
-
-
-def _describe_building(own: Sequence[Compared]) -> dict[str, object]:
-    """Return the channels of a building: recorded PFA [g], PFV/PFA [s], factors, motions and what falls [-]."""
-    trials = [one.trials for one in own]
-    return {
-        "building": own[0].building, "channels": len(own), "ratios": [one.ratio for one in own],
-        "factors": [one.factors[at] for one in own for at in (0, len(LEVELS) - 1)],
-        "peaks": [one.channel.read().pfa / GRAVITY for one in trials],
-        "mean_pfa": [one.mean_pfa for one in trials], "mean_pfv": [one.mean_pfv for one in trials],
-        "none": float(np.mean([one.fallen[: len(LEVELS)] == 0 for one in trials])),
-        "records": [float(np.mean([one.fell_in_record[LEVELS.index(at)] for one in trials])) for at in RECORDS_AT],
     }  # fmt: skip
 
 

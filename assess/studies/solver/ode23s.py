@@ -66,20 +66,10 @@ class Ode23s(OdeSolver):  # type: ignore[misc]  # scipy is not typed
     direction: float
 
     def __init__(
-        self,
-        fun: Rates,
-        t0: float,
-        y0: FloatArray,
-        t_bound: float,
-        *,
-        rtol: float = 1e-3,
-        atol: float = 1e-6,
-        jac: Jacobian | None = None,
-        first_step: float | None = None,
-        max_step: float = math.inf,
-        vectorized: bool = False,
-        **unknown: object,
-    ) -> None:
+        self, fun: Rates, t0: float, y0: FloatArray, t_bound: float, *, rtol: float = 1e-3, atol: float = 1e-6,
+        jac: Jacobian | None = None, first_step: float | None = None, max_step: float = math.inf,
+        vectorized: bool = False, **unknown: object,
+    ) -> None:  # fmt: skip
         if unknown:
             raise ValueError(f"Ode23s has no option {', '.join(unknown)}: leave it out")
         if not (rtol > 0 and atol > 0 and max_step > 0 and (first_step is None or first_step > 0)):
@@ -114,12 +104,21 @@ class Ode23s(OdeSolver):  # type: ignore[misc]  # scipy is not typed
     def _step_impl(self) -> tuple[bool, str | None]:
         shortest = 16 * abs(np.nextafter(self.t, math.inf) - self.t)
         ahead = max(min(self.ahead, self.max_step), shortest)
-        derivatives, grow = self._differentiate(ahead), GROW
+        (by_t, by_y), grow, t, f0 = self._differentiate(ahead), GROW, self.t, self.rates
         while True:
             left = abs(self.t_bound - self.t)
             h = left if ahead >= 0.9 * left and left <= self.max_step else min(ahead, left)
-            y, rates, error, path = self._try(self.direction * h, *derivatives)
-            size = np.max(np.abs(error) / np.maximum(self._scale(self.y), self._scale(y))) / self.rtol
+            step = self.direction * h
+            hdt, (lu, order, _) = step * D * by_t, dgetrf(self.unit - step * D * by_y)
+            self.nlu += 1
+            k1 = dgetrs(lu, order, f0 + hdt)[0]
+            f1 = self.fun(t + step / 2, self.y + step / 2 * k1)
+            k2 = dgetrs(lu, order, f1 - k1)[0] + k1
+            y1 = self.y + step * k2
+            f2 = self.fun(t + step, y1)
+            k3 = dgetrs(lu, order, f2 - E32 * (k2 - f1) - 2 * (k1 - f0) + hdt)[0]
+            error = step / 6 * (k1 - 2 * k2 + k3)
+            size = np.max(np.abs(error) / np.maximum(self._scale(self.y), self._scale(y1))) / self.rtol
             better = SAFETY * size ** (-1 / 3) if size > 0 else GROW
             if size <= 1:
                 break
@@ -127,24 +126,9 @@ class Ode23s(OdeSolver):  # type: ignore[misc]  # scipy is not typed
                 return False, self.TOO_SMALL_STEP
             ahead, grow = max(shortest, h * max(SHRINK, better)), 1.0
         self.ahead = h * min(grow, max(SHRINK, better))
-        self.t = self.t_bound if h == left else self.t + self.direction * h
-        self.y, self.rates, self.path = y, rates, path
+        self.path = _Parabola(t, t + step, self.y, k1, k2)
+        self.t, self.y, self.rates = self.t_bound if h == left else t + step, y1, f2
         return True, None
-
-    def _try(
-        self, h: float, by_t: FloatArray, by_y: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray, "_Parabola"]:
-        """Return y, F, the error and the path of one step of `h`."""
-        t, y, f0, hdt = self.t, self.y, self.rates, h * D * by_t
-        lu, order, _ = dgetrf(self.unit - h * D * by_y)
-        self.nlu += 1
-        k1 = dgetrs(lu, order, f0 + hdt)[0]
-        f1 = self.fun(t + h / 2, y + h / 2 * k1)
-        k2 = dgetrs(lu, order, f1 - k1)[0] + k1
-        y1 = y + h * k2
-        f2 = self.fun(t + h, y1)
-        k3 = dgetrs(lu, order, f2 - E32 * (k2 - f1) - 2 * (k1 - f0) + hdt)[0]
-        return y1, f2, h / 6 * (k1 - 2 * k2 + k3), _Parabola(t, t + h, y, k1, k2)
 
     def _dense_output_impl(self) -> Any:
         return self.path
