@@ -1,7 +1,7 @@
 """What methods are evaluated on: a batch of cases, the motions of their floors, and what a simulation finds of both."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol, Self
 
@@ -49,27 +49,23 @@ class Ensemble(Protocol):
         """Prepare the motions; their memory is released with the result."""
 
 
-class Motions(Protocol):
-    """What an `Ensemble` opens."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Motions:
+    """What an `Ensemble` opens.
 
-    @property
-    def fit(self) -> "Fit | None":
-        """How they meet the spectrum that they were made for; None for motions that were given."""
+    * `realise`: returns motions from a number on, and a count of them, in batches: (k, n) [m/s2], and their time step
+      [s].
+    * `fit`: how they meet the spectrum that they were made for; None for motions that were given.
+    * `spectra`: response spectra of the first 100, and the one that they were made for; None where unknown.
+    * `is_weak`: whether they are weaker than the floor's motion.
+    * `bands`: factors above and below the corner by which drawn motions are brought to the floor's peaks [-].
+    """
 
-    @property
-    def spectra(self) -> "Spectra | None":
-        """Response spectra of the first of them, and the one that they were made for; None where unknown."""
-
-    @property
-    def is_weak(self) -> bool:
-        """Whether they are weaker than the floor's motion."""
-
-    @property
-    def bands(self) -> tuple[float, float] | None:
-        """Factors above and below the corner by which drawn motions are brought to the floor's peaks [-]."""
-
-    def realise(self, first: int, count: int) -> list[tuple[NDArray[Any], float]]:
-        """Return motions `first` to `first + count - 1` in batches: (k, n) [m/s2], and their time step [s]."""
+    realise: Callable[[int, int], list[tuple[NDArray[Any], float]]]
+    fit: "Fit | None" = None
+    spectra: "Spectra | None" = None
+    is_weak: bool = False
+    bands: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,15 +13,15 @@ for itself, as they are made at different places of it; a sign is found where tw
 
 import math
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from assess.arrays import FloatArray
+from assess.methods import Motions
 from assess.model import NEAR_AXIS, Building, angle_between
 from assess.motion.record import Motion, Record, treat
 from assess.motion.rows import GROUP
@@ -31,26 +31,9 @@ from assess.progress import SILENT, Progress
 if TYPE_CHECKING:
     from assess.motion.suite import Suite
     from assess.motion.target import Grid, Target
-    from assess.motion.target_fit import Fit, Spectra
 
 WEAK_PFA, WEAK_PFV = 0.9, 0.85
 """Shares of the floor's PFA and PFV [-]: motions whose own are lower on average may not lower a class."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class OpenMotions:
-    """Motions that have been made ready.
-
-    `realise` returns motions from a number on, and a count of them, in batches (k, n) [m/s2], and their time step [s].
-    `fit` and `spectra` are those of the first 100 motions; `is_weak` tells whether they are weaker than the floor's.
-    `bands` are the factors above and below the corner by which drawn motions are brought to the floor's peaks [-].
-    """
-
-    realise: Callable[[int, int], list[tuple[NDArray[Any], float]]]
-    fit: "Fit | None" = None
-    spectra: "Spectra | None" = None
-    is_weak: bool = False
-    bands: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,7 +71,7 @@ class GeneratedEnsemble:
         own = demand.motion if demand.record is None or demand.scale == 1.0 else treat(demand.record)
         return recorded_target(own, self.grid)
 
-    def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
+    def open(self, threads: int, progress: Progress = SILENT) -> Motions:
         """Find the filter and the corrections that meet the target; the motions are in single precision."""
         from assess.motion.noise import Phases
         from assess.motion.shared_motions import share_motions
@@ -97,7 +80,7 @@ class GeneratedEnsemble:
         shared = share_motions(self.build_target(), phases, factor=self.factor, threads=threads, progress=progress)
         step = self.grid.time_step
         is_weak = shared.generator.fit.pfv_ratio < WEAK_PFV  # NaN where no PFV is to be met
-        return OpenMotions(
+        return Motions(
             lambda first, count: [(shared.realise(first, count), step)], shared.generator.fit, shared.spectra, is_weak
         )
 
@@ -122,7 +105,7 @@ class DrawnEnsemble:
         """Whether nothing is known of the building, nor of the floor's height."""
         return self.drawn.is_unknown
 
-    def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
+    def open(self, threads: int, progress: Progress = SILENT) -> Motions:
         """Find what brings the draws to the floor's peaks; the motions are in single precision."""
         from assess.motion.beam import Beams, open_floor
         from assess.motion.drawn_ground import draw_ground
@@ -137,7 +120,7 @@ class DrawnEnsemble:
             made = GeneratedEnsemble(record, self.grid, self.seed, self.signs).open(1, progress)
             beams = build((record, axis), lambda group: made.realise(group * GROUP, GROUP)[0][0])
         found, step = open_floor(beams, self.drawn.target, threads, progress), self.grid.time_step
-        return OpenMotions(
+        return Motions(
             lambda first, count: [(found.realise(first, count, threads, progress), step)], bands=(found.high, found.low)
         )
 
@@ -176,14 +159,14 @@ class SuiteEnsemble:
         """The recorded motion as treated [m/s2], and its time step [s]."""
         return self.demand.recorded
 
-    def open(self, threads: int, progress: Progress = SILENT) -> OpenMotions:
+    def open(self, threads: int, progress: Progress = SILENT) -> Motions:
         """Take them as they are."""
         pfa = self.demand.pfa if self.is_scaled else None
         spectra = self.suite.scaled_spectra(pfa, progress=progress)
         factor = 1.0 if self.is_scaled else self.factor
 
         spectra = replace(spectra, ordinates=spectra.ordinates * np.float32(factor))
-        return OpenMotions(
+        return Motions(
             lambda first, count: [(factor * one, step) for one, step in self.suite.realise(first, count, pfa)],
             None, spectra, self.is_weak,
         )  # fmt: skip

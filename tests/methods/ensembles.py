@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from assess.arrays import FloatArray
+from assess.methods import Motions
 from assess.motion.target_fit import Fit, Spectra
 from assess.progress import SILENT, Progress
 
@@ -22,7 +23,7 @@ def make_motion(seed: int, number: int, peak: float = 6.0) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MadeUp:
-    """An ensemble, which is its own open motions as well; `asked` lists what was asked for: (first, count)."""
+    """An ensemble; `asked` lists what was asked for: (first, count)."""
 
     seed: int
     is_assumed: bool = False
@@ -41,10 +42,10 @@ class MadeUp:
         """The recorded motion, and its time step."""
         return (make_motion(self.seed, 10**6), STEP) if self.has_record else None
 
-    def open(self, threads: int, progress: Progress = SILENT) -> "MadeUp":
+    def open(self, threads: int, progress: Progress = SILENT) -> Motions:
         """Note with how many threads."""
         self.opened.append(threads)
-        return self
+        return Motions(self.realise, self.fit, self.spectra, self.is_weak, self.bands)
 
     def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
         """Return motions in one batch."""

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from assess.arrays import FloatArray
 from assess.errors import CancelledError
-from assess.methods import Cases, Outcome
+from assess.methods import Cases, Motions, Outcome
 from assess.methods.housner_monte_carlo import BATCH, METHOD, evaluate
 from assess.methods.simulate import LOOKS, LOOKS_Z, interval_width
 from assess.motion.target_fit import Fit, Spectra
@@ -42,8 +42,8 @@ class Pushes:
     bands: tuple[float, float] | None = None
     asked: list[tuple[int, int]] = field(default_factory=list)
 
-    def open(self, threads: int, progress: Progress = SILENT) -> "Pushes":
-        return self
+    def open(self, threads: int, progress: Progress = SILENT) -> Motions:
+        return Motions(self.realise, self.fit, self.spectra, self.is_weak, self.bands)
 
     def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
         self.asked.append((first, count))
@@ -405,10 +405,10 @@ def test_equal_pieces_do_the_same() -> None:
 @pytest.mark.parametrize("where", ["open", "realise"])
 def test_what_an_ensemble_raises_comes_through(threads: int, where: str) -> None:
     class Broken(MadeUp):
-        def open(self, threads: int, progress: Progress = SILENT) -> MadeUp:
+        def open(self, threads: int, progress: Progress = SILENT) -> Motions:
             if where == "open":
                 raise RuntimeError("cannot open")
-            return self
+            return super().open(threads, progress)
 
         def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
             raise RuntimeError("cannot realise")
