@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from assess.i18n import LANGUAGES, list_languages, load_catalogue
+from assess.risk import LIMITS
 
 COOKIE = "assess-language"
 """The cookie in which the page keeps the language that its user chose."""
@@ -18,7 +19,10 @@ _CALL = re.compile(rf"(?<![\w$.])(?:t\(\s*(?P<text>{_SUM})|tn\(\s*(?P<one>{_SUM}
 
 
 def describe_texts(language: str) -> dict[str, Any]:
-    """Return the texts of the page in a language, English where it is unknown, and how its numbers are written."""
+    """Return the texts of the page in a language, English where it is unknown, and how its numbers are written.
+
+    Percentages are not rounded across the limits of the classes.
+    """
     code = language if language in LANGUAGES else LANGUAGES[0]
     catalogue = load_catalogue(code)
     texts: dict[str, str | list[str]] = {}
@@ -30,6 +34,7 @@ def describe_texts(language: str) -> dict[str, Any]:
         "texts": texts,
         "decimal": catalogue.decimal,
         "group": catalogue.group,
+        "limits": list(LIMITS),
     }
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from assess.i18n import gettext
-from assess.risk import RiskClass
+from assess.risk import LIMITS, RiskClass
 from assess.workbook.catalogue import read_catalogue
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, write_plainly
 from assess.workbook.lists import FROZEN, LETTERS, PLACES, ROW, ROWS, ListsWriter, Units
@@ -48,8 +48,9 @@ FIRST_LINES = (
     "right down from the row above. The program reads every row, with formulas or without.",
     "Columns may stand in any order, and you may add your own: they are kept and come back in the Excel report. "
     "Columns marked * are required.",
-    "The classes: ○ low below 3 %, ◇ medium below 30 %, ▲ high below 70 %, ■ very high from 70 % chance of overturning "
-    "in this scenario, not per year. A * behind a class: outside the range in which the formula was checked by tests.",
+    "The classes: ○ low below {low:g} %, ◇ medium below {medium:g} %, ▲ high below {high:g} %, ■ very high from "
+    "{high:g} % chance of overturning in this scenario, not per year. A * behind a class: outside the range in which "
+    "the formula was checked by tests.",
     "Words in place of a class: shaking?: nothing tells how the floor shakes: fill in its PFA, or choose Shaking in "
     "Building. run assess: assess run works out the motion of the floor, from a record, from other floors or from the"
     " ground. check: a cell holds a text, or a number out of range, or Breadth is above Width: nothing is computed "
@@ -276,7 +277,8 @@ class _Writer:
         self._set_up_print(page)
         page.write_string(0, 0, gettext(TITLE), self.title)
         row = 2
-        for line in (gettext(text, rows=self.last[ITEMS.name] - 1) for text in FIRST_LINES):
+        limits = dict(zip(("low", "medium", "high"), (100 * one for one in LIMITS), strict=True))
+        for line in (gettext(text, rows=self.last[ITEMS.name] - 1, **limits) for text in FIRST_LINES):
             page.merge_range(row, 0, row, 2, line, self.wrap)
             page.set_row(row, LINE * count_text_lines(line, 14 + width + _HELP_WIDTH))
             row += 1

@@ -3,10 +3,10 @@
 
 const MISSING = "–";
 const PERCENT = "\u00a0%";
-const LIMITS = [0.03, 0.3, 0.7]; // of the classes, as assess.risk; a percentage never rounds across one
 const MOST_DECIMALS = 4;
 const YEAR_S = 31536000;
-const catalogue = { language: "en", languages: [["en", "English"]], texts: {}, decimal: ".", group: "," };
+/** Percentages never round across `limits`, those of the classes. */
+const catalogue = { language: "en", languages: [["en", "English"]], texts: {}, decimal: ".", group: ",", limits: [] };
 
 /** Read the texts of a language; without one the server chooses by the cookie, the workbook, the browser. */
 export async function loadTexts(language = "") {
@@ -64,7 +64,7 @@ export function percent(chance) {
   if (chance === null || chance === undefined || !Number.isFinite(chance)) return MISSING;
   for (let digits = 1; digits <= MOST_DECIMALS; digits += 1) {
     const shown = Number((100 * chance).toFixed(digits));
-    if (!LIMITS.some((limit) => chance < limit && limit <= shown / 100)) return `${number(shown, digits)}${PERCENT}`;
+    if (!catalogue.limits.some((limit) => chance < limit && limit <= shown / 100)) return `${number(shown, digits)}${PERCENT}`;
   }
   return `${number(100 * chance - 10 ** -MOST_DECIMALS, MOST_DECIMALS)}${PERCENT}`;
 }
