@@ -21,16 +21,7 @@ from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
 from assess.bim.building_model import ON_FLOOR, BuildingModel, Door, Point, Space, Stair, Storey
-from assess.bim.plan_shapes import (
-    FloatArray,
-    SpaceSearch,
-    box_at,
-    direction_of,
-    find_largest,
-    list_polygons,
-    place_at,
-    to_polygon,
-)
+from assess.bim.plan_shapes import SpaceSearch, box_at, direction_of, find_largest, list_polygons, place_at, to_polygon
 
 Sides = tuple[str, str]
 """Keys of the spaces on the side to which the normal of a door points, and on the other; "" where there is none."""
@@ -121,12 +112,10 @@ def find_kinds(model: BuildingModel, sides: Mapping[str, Sides]) -> dict[str, Do
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """What joins two rooms, or leads out of one: a door, an opening without a door, or the end of a stair.
-
-    `name` is its key among all nodes of a draft, `at` its centre, `normal` the direction of the normal of its wall;
-    (0, 0) for a stair, which is reached from any side. `width` is that in the plan, `clear` is taken to be clear, 0
-    where nothing is known of it, and `overall` is the smaller of the stated width of a door and its opening [m], 0
-    where it is no door. `spaces` are the keys of the spaces that it joins.
+    """What joins two rooms, or leads out of one: a door, an opening without a door, or the end of a stair. `name` is
+    its key among the nodes of a draft, `normal` that of its wall; (0, 0) for a stair. `width` is that in the plan,
+    `clear` is taken to be clear, `overall` the smaller of the stated width of a door and its opening [m]; 0 where
+    unknown.
     """
 
     name: str
@@ -219,8 +208,8 @@ def link_stairs(model: BuildingModel, plan: FloorPlan) -> list[Link]:
 class _Rays(NamedTuple):
     """Rays from the edges of rooms: start and direction, (n, 2), the numbers of the room and of the edge, (n,)."""
 
-    at: FloatArray
-    outward: FloatArray
+    at: NDArray[np.float64]
+    outward: NDArray[np.float64]
     room: NDArray[np.intp]
     edge: NDArray[np.intp]
 

@@ -41,18 +41,16 @@ BEYOND = 1.5  # what is up to so many widths beyond the end of a middle line is 
 INSET = 0.45  # middle lines end this far from the walls at their ends [m]
 
 
-Way = tuple[str, str, dict[str, Any]]
-"""A straight way between two nodes of a room, by their names: its cost, and its free width in a corridor [m]."""
-
-
 @dataclass(slots=True)
 class Ways:
-    """The ways inside one room: `ends` are its links and its own place by name, `points` the nodes that are added."""
+    """The straight ways inside one room. `ends` are its links and its own place by name, `points` the nodes that are
+    added; `found` joins two nodes, with the cost, and with the free width in a corridor [m].
+    """
 
     room: Room
     ends: Mapping[str, Point]
     points: dict[str, Point]
-    found: list[Way]
+    found: list[tuple[str, str, dict[str, Any]]]
 
     def at(self, name: str) -> Point:
         """Return where a node is."""

@@ -270,13 +270,11 @@ class _Sheet:
     places: list[dict[str, Any]] = field(default_factory=list)
     _named: dict[str, str] = field(default_factory=dict)
     _taken: set[str] = field(default_factory=set)
-    _openings: dict[str, list[Link]] = field(default_factory=dict)
+    _floors: dict[str, str] = field(default_factory=dict)
 
     def list_routes(self) -> Iterator[dict[str, Any]]:
         self._taken = {key(name) for name in self.names.values()}
-        for opening in self.network.openings:
-            for space in opening.spaces:
-                self._openings.setdefault(space, []).append(opening)
+        self._floors = {one.key: self.names.get(one.key) or one.name for one in self.model.storeys}
         of_target: dict[str, list[Step]] = {}
         for step in self.steps.values():
             of_target.setdefault(step.target, []).append(step)
@@ -301,7 +299,7 @@ class _Sheet:
         if own.place:
             return self.names[own.place]
         if node not in self._named:
-            floor = self._floor(own.storey)
+            floor = self._floors[own.storey]
             names = (
                 gettext("{floor} opening {number}", floor=floor, number=number) if own.link
                 else gettext("{floor} point {number}", floor=floor, number=number)
@@ -312,9 +310,6 @@ class _Sheet:
             x, y = (round(one, 2) for one in own.at)
             self.places.append({"place": name, "floor": floor, "x": x, "y": y})
         return self._named[node]
-
-    def _floor(self, storey: str) -> str:
-        return self.names.get(storey) or next(one.name for one in self.model.storeys if one.key == storey)
 
     def _describe(self, step: Step) -> dict[str, Any]:
         """Return the row of a segment without its route.
@@ -331,11 +326,11 @@ class _Sheet:
         near = sorted(plan.tree.query(line))
         spaces = [way["space"]]
         spaces += [plan.spaces[at].key for at in near if plan.polygons[at].intersection(line).length > IN_ROOM]
-        for opening in self._openings.get(way["space"], ()):
+        for opening in (one for one in self.network.openings if way["space"] in one.spaces):
             if line.distance(shapely.Point(opening.at)) <= FALLS_OVER:
                 spaces += [one for one in opening.spaces if not plan.hides(line, one, BEHIND_WALL)]
         rooms = [self.names[one] for one in dict.fromkeys(spaces)]
-        row["floor"] = self._floor(start.storey)
+        row["floor"] = self._floors[start.storey]
         row["room"] = "" if any(";" in room for room in rooms) else "; ".join(rooms)
         links = [node.link for node in (start, end) if node.link is not None]
         row |= _set_widths(links, way["width"], measure_gap(plan, way["space"], (start.at, end.at), links))

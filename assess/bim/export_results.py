@@ -18,16 +18,7 @@ from assess.i18n import gettext as _
 from assess.intensity import SHAKINGS
 from assess.methods import simulation
 from assess.report import words
-from assess.report.say.work import (
-    CHECKS,
-    HOLDS,
-    NAMED,
-    RouteStep,
-    join_names,
-    say_effect,
-    say_force,
-    shorten_names,
-)
+from assess.report.say.work import CHECKS, HOLDS, NAMED, RouteStep, join_names, say_effect, say_force, shorten_names
 from assess.results import CANNOT_ROCK
 from assess.risk import RiskClass, classify
 from assess.route_results import RouteState

@@ -53,7 +53,6 @@ from assess.schedule_results import ScheduleRow
 from assess.text import plain_text
 
 MOST = 200  # topics in a file; the rest are counted
-TYPE, STATUS = "Issue", "Open"
 PRIORITIES = {
     RiskClass.VERY_HIGH: "Critical", RiskClass.HIGH: "Major", RiskClass.MEDIUM: "Normal", RiskClass.LOW: "Minor",
 }  # fmt: skip
@@ -160,7 +159,7 @@ def _add_topic(
 ) -> None:  # fmt: skip
     run = found.run
     risk, upper = max(one.risk for one in pieces), max(one.upper for one in pieces)
-    topic = _add(markup, "Topic", Guid=guid, TopicType=TYPE, TopicStatus=STATUS)
+    topic = _add(markup, "Topic", Guid=guid, TopicType="Issue", TopicStatus="Open")
     _add(topic, "Title", say_title(found, entry, pieces))
     _add(topic, "Priority", PRIORITIES[upper])
     _add(topic, "Index", str(entry.place))

@@ -22,7 +22,6 @@ from shapely import Polygon
 from assess.bim.building_model import (
     NOT_ON_FLOOR,
     ON_FLOOR,
-    Area,
     BuildingModel,
     Door,
     Piece,
@@ -412,7 +411,16 @@ def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
     known = {one.key for one in storeys}
     spaces = tuple(_list_spaces(model, known))
     pieces, levelled, skipped, doubts = _find_pieces(model, storeys, spaces, also)
-    walls, windows = _cut_walls(model, levelled)
+    outlines = {one.id(): one for one in list_elements(model, (*WALLS, "IfcWindow"))}
+    cuts = {
+        number: [cut(shape, storey.level + CUT) for storey in levelled]
+        for number, shape in list_shapes(model, list(outlines.values()), with_openings=True)
+    }
+    walls, windows = dict[str, list[Polygon]](), dict[str, list[Polygon]]()
+    for number in sorted(cuts):
+        kept = windows if outlines[number].is_a("IfcWindow") else walls
+        for storey, polygons in zip(levelled, cuts[number], strict=True):
+            kept.setdefault(storey.key, []).extend(polygons)
     remarks = []
     missing = len(model.by_type("IfcSpace")) - len(spaces)
     if not spaces and not missing:
@@ -433,7 +441,8 @@ def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
     read = BuildingModel(
         source=name, schema=model.schema_identifier, storeys=levelled, spaces=spaces,
         doors=tuple(_list_doors(model, known, unit)), stairs=tuple(_list_stairs(model, levelled)),
-        pieces=tuple(pieces), walls=walls, windows=windows, skipped=skipped, warnings=(*warnings, *doubts),
+        pieces=tuple(pieces), walls={key: merge(some) for key, some in walls.items()},
+        windows={key: merge(some) for key, some in windows.items()}, skipped=skipped, warnings=(*warnings, *doubts),
         remarks=tuple(remarks), **_describe_site(model),
     )  # fmt: skip
     return bring_near(read)
@@ -521,7 +530,7 @@ def _list_doors(model: Any, storeys: Collection[str], unit: float) -> Iterator[D
     """Yield the doors that have a plan: that of their opening, else their own."""
     doors = model.by_type("IfcDoor")
     keys = tell_apart(doors)
-    fills = [(one.id(), fill.RelatingOpeningElement) for one in doors for fill in one.FillsVoids]
+    fills = ((one.id(), fill.RelatingOpeningElement) for one in doors for fill in one.FillsVoids)
     openings = {number: opening for number, opening in fills if opening is not None}
     shapes = dict(list_shapes(model, [*doors, *openings.values()]))
     for one in doors:
@@ -564,23 +573,6 @@ def _find_step(points: FloatArray, level: float) -> Point:
     plan = (near if len(near) else points)[:, :2]
     x, y = (plan.max(axis=0) + plan.min(axis=0)) / 2
     return float(x), float(y)
-
-
-Plans = dict[str, tuple[Area, ...]]  # areas by the key of their storey
-
-
-def _cut_walls(model: Any, storeys: Sequence[Storey]) -> tuple[Plans, Plans]:
-    elements = {one.id(): one for one in list_elements(model, (*WALLS, "IfcWindow"))}
-    walls, windows = dict[str, list[Polygon]](), dict[str, list[Polygon]]()
-    cuts = {
-        number: [cut(shape, storey.level + CUT) for storey in storeys]
-        for number, shape in list_shapes(model, list(elements.values()), with_openings=True)
-    }
-    for number in sorted(cuts):
-        kept = windows if elements[number].is_a("IfcWindow") else walls
-        for storey, polygons in zip(storeys, cuts[number], strict=True):
-            kept.setdefault(storey.key, []).extend(polygons)
-    return {key: merge(some) for key, some in walls.items()}, {key: merge(some) for key, some in windows.items()}
 
 
 # ---------------------------------------------------------------- furniture
@@ -674,12 +666,20 @@ class _Shaped:
         self.bounds[number] = np.concatenate([shape.points.min(axis=0), shape.points.max(axis=0)])
 
     def settle_levels(self) -> list[Text]:
-        """Move the floor of a storey where nearly all pieces are off it by one height; return warnings."""
+        """Move the floor of a storey where nearly all pieces are off it by one height; return warnings.
+
+        One piece tells it where that is the height by the Elevation of the model. At heights of `_HUNG` furniture may
+        hang on walls.
+        """
         warnings = []
         for storey in self.storeys.values():
             own = [number for number, one in self.pieces.items() if one.storey == storey.key and not one.space]
-            shift = find_shift([self.pieces[number].bottom for number in own], storey.elevation - storey.level)
-            if shift:
+            bottoms = [self.pieces[number].bottom for number in own]
+            shift = float(np.median(bottoms)) if bottoms else 0.0
+            nearly_all = sum(abs(one - shift) <= _ALIKE for one in bottoms) >= _NEARLY_ALL * len(bottoms)
+            is_clear = len(bottoms) >= _FEWEST and not _HUNG[0] <= shift <= _HUNG[1]
+            is_stated = abs(shift - (storey.elevation - storey.level)) <= _ALIKE
+            if abs(shift) > ON_FLOOR and nearly_all and (is_clear or is_stated):
                 for number in own:
                     self.pieces[number] = replace(self.pieces[number], bottom=self.pieces[number].bottom - shift)
                 self.storeys[storey.key] = replace(storey, level=storey.level + shift)
@@ -704,19 +704,6 @@ class _Shaped:
         for number in gone:
             del self.pieces[number], self.bounds[number]
         return gone
-
-
-def find_shift(bottoms: Sequence[float], stated: float) -> float:
-    """Return by what height nearly all pieces of a storey stand above its floor, 0 where they do not [m].
-
-    `bottoms`: heights of the lowest points of its pieces. `stated`: how much higher the floor is by the Elevation of
-    the model: where that is the height, one piece tells it. At heights of `_HUNG` furniture may hang on walls.
-    """
-    height = float(np.median(bottoms)) if bottoms else 0.0
-    nearly_all = sum(abs(one - height) <= _ALIKE for one in bottoms) >= _NEARLY_ALL * len(bottoms)
-    is_clear = len(bottoms) >= _FEWEST and not _HUNG[0] <= height <= _HUNG[1]
-    is_told = nearly_all and (is_clear or abs(height - stated) <= _ALIKE)
-    return height if abs(height) > ON_FLOOR and is_told else 0.0
 
 
 def _name_type(element: Element) -> str:

@@ -16,16 +16,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from assess.bim.building_model import (
-    LONGEST_NAME,
-    BuildingModel,
-    Door,
-    Piece,
-    Skipped,
-    Space,
-    Stair,
-    half_turn,
-)
+from assess.bim.building_model import LONGEST_NAME, BuildingModel, Door, Piece, Skipped, Space, Stair, half_turn
 from assess.bim.draft_floor import REACH, find_kinds, find_room_points, find_sides
 from assess.bim.floor_drawing import draw_storey, name_plans
 from assess.bim.import_workbook import LOWEST_ROOF, ImportedBuilding, name_apart, note_datum

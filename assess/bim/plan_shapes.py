@@ -18,7 +18,6 @@ from assess.i18n import Text, nfill
 from assess.workbook.habits import name_some
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 AT_FLOOR = 0.03  # height above the lowest point up to which a piece is taken to touch the floor [m]
 UPRIGHT = 0.999  # least Z of the vertical axis of a piece that stands upright [-]: within 2.6 degrees
@@ -40,7 +39,7 @@ class Shape:
     """Triangles of an element: corners (n, 3) [m], indices (m, 3) of those of each, its axes (3, 3) as columns."""
 
     points: FloatArray
-    triangles: IntArray
+    triangles: NDArray[np.int64]
     axes: FloatArray
 
     @property

@@ -26,8 +26,6 @@ from assess.version import __version__
 
 Reader = Callable[[Path, str, Sequence[str]], BuildingModel]
 """Reads a file, by its path, its name and further classes of furniture."""
-_ZIP = b"PK\x03\x04"
-_BRACES = (b"{", b"[")
 _LOOKED_AT = 4096
 
 
@@ -62,7 +60,7 @@ def read_source(
 
 
 def _choose(path: Path, name: str, start: bytes) -> Reader | None:
-    if start.startswith(_ZIP):
+    if start.startswith(b"PK\x03\x04"):
         try:
             with zipfile.ZipFile(path) as archive:
                 parts = archive.namelist()
@@ -73,7 +71,7 @@ def _choose(path: Path, name: str, start: bytes) -> Reader | None:
         if any(part.lower().endswith((".ifc", ".ifcxml")) for part in parts):
             check_model(path, name)
         return partial(_read_bytes, read_sweet_home, MOST_OF_HOME) if HOME in parts or OLD_HOME in parts else None
-    if start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(_BRACES):
+    if start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith((b"{", b"[")):
         return partial(_read_bytes, read_roomplan, MOST_OF_SCAN)
     if not is_model(start) and path.suffix.lower() not in (".ifc", ""):
         raise ModelError(

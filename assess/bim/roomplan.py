@@ -69,7 +69,6 @@ STAIRS = "stairs"
 BUILT_IN = ("oven", "dishwasher", "stove", "washerDryer", "refrigerator")
 """Categories that are built in where they belong to an object of the category storage."""
 FITTED = ("oven", "dishwasher")  # categories that are usually built in
-LOW = "low"
 WALL = 0.1  # thickness with which walls are drawn: a scan knows their faces alone [m]
 JOINS = 0.15  # gap at a corner across which two walls are joined to close a room [m]
 
@@ -404,7 +403,7 @@ class _Scan:
                     support_width=long, bottom=bottom, is_fitted=one.kind in FITTED,
                 )
             )  # fmt: skip
-            unsure[kind] += one.confidence == LOW
+            unsure[kind] += one.confidence == "low"
         return pieces, unsure, count_skipped(skipped)
 
     def list_doors(self) -> Iterator[Door]:

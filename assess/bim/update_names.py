@@ -69,13 +69,9 @@ def _find_majority(counter: Counter[str]) -> str:
 
 
 def match_rooms(trios: Iterable[tuple[str, str, str]], known: Collection[str]) -> dict[tuple[str, str], str]:
-    """Return the names that people gave to rooms, by floor and room of the model as names are compared.
-
-    `trios`: of every piece that both have: its floor as names are compared, its room in the model and in the workbook.
-    `known`: all rooms of the model, as names are compared: a piece in another one of these was moved.
-
-    A room was renamed where more than half of its pieces are in one room that the model does not know, and none in a
-    room of its own name.
+    """Return the names that people gave to rooms, by floor and room of the model as names are compared: more than half
+    of the pieces are in one room that the model does not know, and none in a room of its own name. `trios`: of every
+    piece that both have: its floor, its room in the model and in the workbook. `known`: all rooms of the model.
     """
     counts: dict[tuple[str, str], Counter[str]] = {}
     spelt: dict[str, str] = {}
@@ -130,10 +126,8 @@ def match_alike(
 
 
 def find_offset(pairs: Iterable[Pair]) -> Point:
-    """Return what is to be added to the positions of a model, so that they have the origin of the workbook [m].
-
-    It is the median over the pieces that both have, along each axis in whole steps of `ROUND`; (0, 0) unless more than
-    half of them lie within `NEAR` of where it puts them.
+    """Return what leads from positions of a model to the origin of the workbook [m]: the median over the pieces that
+    both have, in whole steps of `ROUND`; (0, 0) unless more than half of them lie within `NEAR` of where it puts them.
     """
     steps = [
         (row.get("x") - model["x"], row.get("y") - model["y"])

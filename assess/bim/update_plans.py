@@ -25,10 +25,8 @@ Files = Path | Mapping[str, bytes] | None  # the folder of a workbook, or the fi
 
 
 class PlanUpdate:
-    """The plans of one update: `files` are those to write.
-
-    `sheet` is Floors of the workbook, `sources` are file names that the model had when the workbook was imported from
-    it, and `beside` is the folder of the workbook, or the files beside it.
+    """The plans of one update: `files` are to be written. `sheet` is Floors of the workbook, `sources` are names that
+    the model had when it was imported, `beside` is the folder of the workbook, or the files in it.
     """
 
     def __init__(self, sheet: SheetUpdate, imported: ImportedBuilding, sources: Collection[str], beside: Files) -> None:
@@ -85,10 +83,7 @@ class PlanUpdate:
             self.files[name] = data
 
     def _find_name(self, wanted: str, data: bytes, first: Iterable[str] = ()) -> str:
-        """Return the first name under which a plan can be written: no file of users has it, and no other plan.
-
-        `first` are tried before the one that is wanted.
-        """
+        """Return the first name, `first` before the wanted one, under which no file of users and no other plan is."""
         others = self._taken | self._wanted - {key(wanted)}
 
         def is_free(name: str) -> bool:

@@ -51,13 +51,10 @@ def stage_for(folder: Path) -> Iterator[Path]:
 def deliver(
     stage: Path, folder: Path, find_old: Callable[[Path], Collection[str]], data: str, progress: Progress = SILENT
 ) -> list[str]:
-    """Bring what is in the folder `NEW` of a stage to a folder, which is made if missing.
-
-    `find_old` returns the names of the files there that are of an earlier run and are replaced or removed; whatever it
-    raises leaves all as it was. It is called while the folder is locked. `data` is the new file that lists the others.
-
-    Returns the names of the files that were removed and not replaced. Raises OSError if a file cannot be moved, and all
-    is as it was; OutputError if another run writes to the folder.
+    """Bring what is in the folder `NEW` of a stage to a folder, which is made if missing; return what is gone from
+    there. `find_old` returns the names of files there that are replaced or removed, called while the folder is locked;
+    whatever it raises leaves all as it was. `data` is the new file that lists the others. Raises OSError if a file
+    cannot be moved, and all is as it was; OutputError if another run writes to the folder.
     """
     flush_folder(stage / NEW)
     target = folder.resolve()
@@ -140,10 +137,8 @@ def explain_fault(folder: Path, error: OSError, files: Collection[str]) -> Outpu
 
 
 def save(files: Mapping[Path, bytes]) -> None:
-    """Write files, whole or none of them; a folder below one that exists is made if missing.
-
-    Raises OSError if one cannot be written, which `filename` names, or its folder, and all is as it was; OutputError if
-    another run writes to a folder.
+    """Write files, whole or none of them; a folder below one that exists is made if missing. Raises OSError if one
+    cannot be written, which `filename` names, or its folder; OutputError if another run writes to a folder.
     """
     made: list[Path] = []
     try:

@@ -47,21 +47,19 @@ def read_plan(data: bytes, width: float | None) -> Drawing:
             raise PictureError.about("it is larger than {most} MB. Save it smaller", most=MOST_FILE >> 20)
         from assess.plans.dxf import read_dxf
 
-        return _of_lines(*read_dxf(data))
-    if b"<svg" in data[:65536] or "<svg".encode("utf-16-le") in data[:65536]:
+        content, aspect, left_out, drawn_width = read_dxf(data)
+    elif b"<svg" in data[:65536] or "<svg".encode("utf-16-le") in data[:65536]:
         from assess.plans.svg import read_svg
 
-        return _of_lines(*read_svg(data), None)
-    raise PictureError.about("it is no PNG, JPEG, SVG or DXF file. Save it as one of them")
+        (content, aspect, left_out), drawn_width = read_svg(data), None
+    else:
+        raise PictureError.about("it is no PNG, JPEG, SVG or DXF file. Save it as one of them")
+    return Drawing(content, aspect, is_lines=True, width=drawn_width, left_out=left_out)
 
 
 def count_side(width: float | None) -> int:
     """Return how many pixels the longer side of a picture has at most, by the width of the plan [m]."""
     return MOST if width is None else round(min(max(DOTS * width, LEAST), MOST))
-
-
-def _of_lines(content: bytes, aspect: float, left_out: tuple[str, ...], width: float | None) -> Drawing:
-    return Drawing(content, aspect, is_lines=True, width=width, left_out=left_out)
 
 
 def is_picture(data: bytes) -> bool:

@@ -15,13 +15,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from ifcopenshell.util.element import get_psets
 
-from assess.bim.export_files import (
-    LONGEST_LABEL,
-    append_lines,
-    make_global_id,
-    write_label,
-    write_real,
-)
+from assess.bim.export_files import LONGEST_LABEL, append_lines, make_global_id, write_label, write_real
 from assess.bim.export_model import PROPERTY_SET, make_uuid
 from assess.errors import InputError, ModelError
 from assess.i18n import load_catalogue, speaking

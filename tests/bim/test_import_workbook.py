@@ -1,10 +1,5 @@
 from assess.bim.building_model import LONGEST_NAME
-from assess.bim.import_workbook import (
-    ImportedBuilding,
-    build_workbook,
-    list_rows,
-    name_apart,
-)
+from assess.bim.import_workbook import ImportedBuilding, build_workbook, list_rows, name_apart
 from assess.i18n import load_catalogue, speaking
 from assess.workbook.read import read_inventory
 
