@@ -16,27 +16,10 @@ from assess.version import __version__
 TYPE_CHECKING = False  # as type checkers know it: importing `typing` takes milliseconds
 
 if TYPE_CHECKING:
-    from assess.errors import (
-        AssessError as AssessError,
-    )
-    from assess.errors import (
-        CancelledError as CancelledError,
-    )
-    from assess.errors import (
-        InputError as InputError,
-    )
-    from assess.errors import (
-        OutputError as OutputError,
-    )
-    from assess.errors import (
-        Problem as Problem,
-    )
-    from assess.errors import (
-        RecordError as RecordError,
-    )
-    from assess.errors import (
-        WorkbookError as WorkbookError,
-    )
+    from assess.errors import (  # noqa: I001 - on one line each they are seven imports
+        AssessError as AssessError, CancelledError as CancelledError, InputError as InputError,
+        OutputError as OutputError, Problem as Problem, RecordError as RecordError, WorkbookError as WorkbookError,
+    )  # fmt: skip
     from assess.methods.fitted import read_model as read_model
     from assess.model import Inventory as Inventory
     from assess.pipeline.run import run as run

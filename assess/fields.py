@@ -306,22 +306,6 @@ def item_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
     )  # fmt: skip
 
 
-def case_fields(methods: Sequence[MethodInfo]) -> tuple[Field, ...]:
-    """Return the fields of a piece under one motion."""
-    return (
-        Field(key="item", source="item.item"),
-        Field(key="floor", source="motion.floor"),
-        Field(key="axis", source="motion.axis", choices=AXES),
-        Field(key="source", source="motion.label"),
-        Field(key="pfa_g", source="motion.pfa_g", kind="number"),
-        Field(key="pfv_cm_s", source="motion.pfv_cm_s", kind="number", is_optional=True),
-        Field(key="governs", kind="flag"),
-        *(field for method in methods for field in method_fields(method)),
-        *SIMULATION_FIELDS,
-        *ADOPTED_FIELDS,
-    )
-
-
 def _of_motion(key: str, kind: Kind = "text", **more: Any) -> Field:
     return Field(key=key, kind=kind, is_optional=True, is_blank_unknown=True, **more)
 
@@ -668,9 +652,21 @@ def _name_each(values: Sequence[Any]) -> list[Any]:
 def build_table(results: Results, name: str) -> Table:
     """Return a table: items, cases, floors, segments, routes, rooms, schedule (its entries) or problems."""
     routes, methods = results.route_tables, results.methods
-    if name in ("items", "cases"):
-        fields = item_fields(methods) if name == "items" else case_fields(methods)
-        return Table(fields, lambda: (part if name == "items" else part.cases for part in results.parts()))
+    if name == "items":
+        return Table(item_fields(methods), results.parts)
+    if name == "cases":
+        of_case = (
+            Field(key="item", source="item.item"),
+            Field(key="floor", source="motion.floor"),
+            Field(key="axis", source="motion.axis", choices=AXES),
+            Field(key="source", source="motion.label"),
+            Field(key="pfa_g", source="motion.pfa_g", kind="number"),
+            Field(key="pfv_cm_s", source="motion.pfv_cm_s", kind="number", is_optional=True),
+            Field(key="governs", kind="flag"),
+            *(field for method in methods for field in method_fields(method)),
+            *SIMULATION_FIELDS, *ADOPTED_FIELDS,
+        )  # fmt: skip
+        return Table(of_case, lambda: (part.cases for part in results.parts()))
     floors = {one.floor: one for one in results.floor_rows}
     tables: Mapping[str, tuple[Iterable[Field], Sequence[Any]]] = {
         "floors": (FLOOR_FIELDS, [{"floor": floors[one.floor], "motion": one} for one in results.motions]),

@@ -153,11 +153,6 @@ class FloorRecord:
             self._record = select(_read_again(self.path, self.file, self.sha256), self.channel or None)
         return self._record
 
-    def with_bytes(self, data: bytes) -> "FloorRecord":
-        """Return it with its waveform read from the bytes of its file; raises RecordError if they are others."""
-        record = select(_parse_checked(data, self.file, self.sha256), self.channel or None)
-        return FloorRecord(record=record, **self._address())
-
     def _address(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in ("name", "file", "channel", "sha256", "path")}
 
@@ -431,7 +426,10 @@ class Inventory:
 
         def load(one: FloorRecord) -> FloorRecord:
             data = given.get(_file_key(one.file)) if one.sha256 else None
-            return one if data is None else one.with_bytes(data)
+            if data is None:
+                return one
+            record = select(_parse_checked(data, one.file, one.sha256), one.channel or None)
+            return FloorRecord(record=record, **one._address())
 
         floors = (
             replace(floor, records={axis: tuple(map(load, ones)) for axis, ones in floor.records.items()})

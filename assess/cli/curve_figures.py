@@ -177,8 +177,12 @@ def paint_curves(curves: Curves, panels: Panels[PieceFragility], figure: Any) ->
     every = _lay_out(figure, panels, "Chance of overturning")
     unit, name = UNITS[curves.found.im], LABELS[curves.found.im]
     for axes, drawn in zip(every.flat, panels, strict=False):
-        spans = [_find_span(one) for one in drawn]
-        low, high = min(span[0] for span in spans) / unit, max(span[1] for span in spans) / unit
+        ends = []  # of each curve, the last level at which nothing falls and the first at which everything does
+        for one in drawn:
+            some = np.flatnonzero((one.curve.shares > 0) & (one.curve.shares < 1))
+            first, last = (max(some[0] - 1, 0), some[-1] + 1) if some.size else (0, one.curve.levels.size)
+            ends += one.curve.levels[[first, min(last, one.curve.levels.size - 1)]].tolist()
+        low, high = min(ends) / unit, max(ends) / unit
         for one, (colour, style, marker) in zip(drawn, LINES, strict=False):
             curve, levels = one.curve, one.curve.levels / unit
             kept = (levels >= low) & (levels <= high)
@@ -214,12 +218,3 @@ def paint_curves(curves: Curves, panels: Panels[PieceFragility], figure: Any) ->
     if any(one.may_be_too_low for one in curves.found.curves):
         notes.append("* Its motions may be too weak: pieces may overturn at lower levels than the curve says.")
     figure.suptitle("\n".join(notes), x=0.01, ha="left", fontsize=7.5)
-
-
-def _find_span(one: PieceFragility) -> tuple[float, float]:
-    """Return the levels between which a curve is shown: from the last at which nothing falls to where all do."""
-    curve = one.curve
-    some = np.flatnonzero((curve.shares > 0) & (curve.shares < 1))
-    if not some.size:
-        return float(curve.levels[0]), float(curve.levels[-1])
-    return float(curve.levels[max(some[0] - 1, 0)]), float(curve.levels[min(some[-1] + 1, curve.levels.size - 1)])

@@ -214,6 +214,22 @@ class Sweep:
             drawn = (
                 f"Taken as uncertain in each draw: {'; '.join(uncertain)}. All pieces of a draw share its earthquake."
             )
+        routes = []
+        for one in fragility.routes:
+            anchored = one.if_anchors_fail or (None,) * len(one.blocked)
+            pairs = zip(self.pfa_g, one.blocked, anchored, self._inserted, strict=True) if one.is_evaluated else ()
+            routes.append({
+                "route": one.route, "floors": list(one.floors),
+                "scenario_pfa_g": one.scenario_pfa and [_in_g(peak) for peak in one.scenario_pfa],
+                "evaluated": one.is_evaluated, "unevaluated_segments": list(one.unevaluated),
+                "doubtful_pieces": one.doubtful, "causes": _list_causes(one),
+                "chances": [
+                    {"pfa_g": pfa, "inserted": inserted, **_describe_chance(chance, fails)}
+                    for pfa, chance, fails, inserted in pairs
+                ],
+                "passes": self._describe_passing(one.blocked) if one.is_evaluated else [],
+                "passes_if_anchors_fail": one.if_anchors_fail and self._describe_passing(one.if_anchors_fail),
+            })  # fmt: skip
         return {
             **describe_run(self.assessment, has_routes=True),
             "verdict": self.verdict.describe(), "meaning": " ".join((*MEANING, drawn)),
@@ -222,24 +238,7 @@ class Sweep:
             "uncertainty": None if found is None else asdict(found),
             "pfa_g": self.pfa_g,
             "inserted_g": [_in_g(value) for value in fragility.values if value in fragility.inserted],
-            "routes": [self._describe(route) for route in fragility.routes],
-        }  # fmt: skip
-
-    def _describe(self, one: RouteFragility) -> dict[str, Any]:
-        anchored = one.if_anchors_fail or (None,) * len(one.blocked)
-        pairs = zip(self.pfa_g, one.blocked, anchored, self._inserted, strict=True)
-        return {
-            "route": one.route, "floors": list(one.floors),
-            "scenario_pfa_g": one.scenario_pfa and [_in_g(peak) for peak in one.scenario_pfa],
-            "evaluated": one.is_evaluated, "unevaluated_segments": list(one.unevaluated),
-            "doubtful_pieces": one.doubtful, "causes": _list_causes(one),
-            "chances": [
-                {"pfa_g": pfa, "inserted": inserted, **_describe_chance(chance, fails)}
-                for pfa, chance, fails, inserted in pairs
-                if one.is_evaluated
-            ],
-            "passes": self._describe_passing(one.blocked) if one.is_evaluated else [],
-            "passes_if_anchors_fail": one.if_anchors_fail and self._describe_passing(one.if_anchors_fail),
+            "routes": routes,
         }  # fmt: skip
 
     @property

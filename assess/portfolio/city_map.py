@@ -245,9 +245,20 @@ def draw_map(
         f'<rect class="{name}" width="{frame.wide:g}" height="{frame.high:.1f}" fill="{colour}"/>',
         *(_draw_background(background, frame) if background else ()),
         *_draw_graticule(frame),
-        *_draw_isolines(isolines, frame),
-        '<g class="marks">',
     ]
+    for isoline in isolines:
+        line = [frame.place(*place) for place in isoline.line]
+        path = " ".join(f"{x:.1f} {y:.1f}" for x, y in line)
+        parts.append(f'<path {_ISOLINE} d="M{path}"/>')
+        inside = [(x, y) for x, y in line if 40 < x < frame.wide - 60 and 30 < y < frame.high - 50]
+        if len(inside) > 6:
+            x, y = inside[len(inside) // 2]
+            said = escape(isoline.label)
+            at = f'x="{x:.1f}" y="{y:.1f}" text-anchor="middle" font-weight="bold" font-size="11"'
+            # a white copy behind, as not every program draws the outline of letters behind them
+            halo = f'<text class="halo" {at} stroke="#ffffff" stroke-width="3" aria-hidden="true">{said}</text>'
+            parts.append(f'{halo}<text class="isoline" {at} fill="#5c3a80">{said}</text>')
+    parts.append('<g class="marks">')
     for one in sorted(points, key=lambda point: (point.sign.severity, -point.size, point.at)):
         x, y = frame.place(one.longitude, one.latitude)
         size = f" scale({one.size:g})" if one.size != 1 else ""
@@ -333,21 +344,6 @@ def _draw_graticule(frame: Frame) -> Iterable[str]:
 def _say_degree(value: float, decimals: int, sides: str) -> str:
     side = "" if abs(value) < 1e-9 else sides[value < 0]
     return f"{number(abs(value), f'.{decimals}f')}° {side}".strip()
-
-
-def _draw_isolines(isolines: Sequence[Isoline], frame: Frame) -> Iterable[str]:
-    for one in isolines:
-        line = [frame.place(*place) for place in one.line]
-        path = " ".join(f"{x:.1f} {y:.1f}" for x, y in line)
-        yield f'<path {_ISOLINE} d="M{path}"/>'
-        inside = [(x, y) for x, y in line if 40 < x < frame.wide - 60 and 30 < y < frame.high - 50]
-        if len(inside) > 6:
-            x, y = inside[len(inside) // 2]
-            place = f'x="{x:.1f}" y="{y:.1f}" text-anchor="middle" font-weight="bold" font-size="11"'
-            # a white copy behind, as not every program draws the outline of letters behind them
-            halo = f'<text class="halo" {place} stroke="#ffffff" stroke-width="3" aria-hidden="true">'
-            said = escape(one.label)
-            yield f'{halo}{said}</text><text class="isoline" {place} fill="#5c3a80">{said}</text>'
 
 
 def draw_sign(sign: Sign) -> str:
