@@ -17,10 +17,8 @@ from numpy.typing import ArrayLike
 from assess.arrays import FloatArray
 from assess.motion.scenario import PROFILES
 
-LEAST, MOST = 0.3, 1.6
-"""Limits of F_p over S_DS I_p W [-]."""
-LEAST_DUCTILITY = 1.3
-"""R_mu is at least this above grade; 1 at or below it [-]."""
+LEAST, MOST = 0.3, 1.6  # limits of F_p over S_DS I_p W [-]
+LEAST_DUCTILITY = 1.3  # R_mu is at least this above grade; 1 at or below it [-]
 
 
 def find_tension(

@@ -25,8 +25,7 @@ from assess.units import FORCE
 
 SCREW = 2 * 96 * FORCE["lbf"]
 """Withdrawal of a No. 10 wood screw, 2 in of thread in spruce-pine-fir of G 0.42, by the NDS equation [N]."""
-LEAST_FIXINGS = 2
-"""Brackets or straps a piece has at least: each to a stud of its own."""
+LEAST_FIXINGS = 2  # brackets or straps a piece has at least: each to a stud of its own
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,7 @@ from assess.i18n import Text, fill
 
 DATE = "SOURCE_DATE_EPOCH"
 """The variable that dates reports, for builds that can be repeated (reproducible-builds.org)."""
-LAST = 253_402_300_799
-"""The last second of the year 9999, the latest that dates are known of [s since 1970]."""
+LAST = 253_402_300_799  # the last second of the year 9999, the latest that dates are known of [s since 1970]
 
 
 def find_source_date() -> datetime.datetime | None:

@@ -19,8 +19,7 @@ from assess.i18n import Text, fill
 
 Kind = Literal["fitted", "none fell", "all fell", "one level", "separated", "not rising"]
 
-MOST_MISFIT = 0.05
-"""Largest misfit [-] with which the lognormal stands in for the table."""
+MOST_MISFIT = 0.05  # largest misfit [-] with which the lognormal stands in for the table
 
 MOST_DISPERSION = 10.0
 """From this dispersion on [-] the chance hardly rises: 16 and 84 % fall at levels that are a factor of e^20 apart."""

@@ -22,18 +22,12 @@ from assess.text import split_text
 from assess.units import GRAVITY
 
 COLUMNS = ("pga_g", "annual_rate")
-SHORTEST_TIME, LONGEST_TIME = 0.01, 1e6
-"""Span of the time for which chances of exceedance hold [years]."""
-LARGEST_FILE = 64_000_000
-"""Bytes; a curve takes some hundreds, a national map of sites some millions."""
-MOST_CELLS = 1_500_000
-"""Cells, and ends of lines: 50,000 sites of 28 levels."""
-MOST_PGA = 50.0
-"""Peaks above this [g] are a slip in the unit."""
-FAR = 10_000.0
-"""Distance from the site of the curve [m] above which it is remarked on."""
-EARTH = 6_371_000.0
-"""Mean radius of the earth [m]."""
+SHORTEST_TIME, LONGEST_TIME = 0.01, 1e6  # span of the time for which chances of exceedance hold [years]
+LARGEST_FILE = 64_000_000  # bytes; a curve takes some hundreds, a national map of sites some millions
+MOST_CELLS = 1_500_000  # cells, and ends of lines: 50,000 sites of 28 levels
+MOST_PGA = 50.0  # peaks above this [g] are a slip in the unit
+FAR = 10_000.0  # distance from the site of the curve [m] above which it is remarked on
+EARTH = 6_371_000.0  # mean radius of the earth [m]
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
 _LEVEL = re.compile(r"poe-(\S+)", re.IGNORECASE)
@@ -41,8 +35,7 @@ _TIME = re.compile(r"investigation_time\s*=\s*['\"]?([^,'\"\s]+)")
 _IMT = re.compile(r"\bimt\s*=\s*['\"]?([^,'\"]+)")
 _KIND = re.compile(r"\bkind\s*=\s*['\"]?([^,'\"]+)")
 
-Line = tuple[int, list[str]]
-"""The number of a line, from 1 on, and its cells."""
+Line = tuple[int, list[str]]  # the number of a line, from 1 on, and its cells
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -27,8 +27,7 @@ __all__ = [
 ]  # fmt: skip
 
 _NAMES: Mapping[str, tuple[str, ...]] = {"en": ("English", "Inglese"), "it": ("Italiano", "Italian")}
-LANGUAGES: tuple[str, ...] = tuple(_NAMES)
-"""Codes of the languages of reports and workbooks."""
+LANGUAGES: tuple[str, ...] = tuple(_NAMES)  # codes of the languages of reports and workbooks
 
 
 @dataclass(frozen=True, slots=True)

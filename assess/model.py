@@ -35,8 +35,7 @@ MEASURED, SCANNED = SIZES_FROM[0], SIZES_FROM[-1]
 IMPORTANCE = ("life safety", "function", "property")
 STRUCTURES = ("frame", "walls", "dual", "timber", "masonry", "unknown")
 
-NEAR_AXIS = 15.0
-"""Up to this angle [deg] from an axis a piece, or a record, counts as lying along it."""
+NEAR_AXIS = 15.0  # up to this angle [deg] from an axis a piece, or a record, counts as lying along it
 
 ASSUMABLE = ("breadth", "width", "height", "weight", "centre_of_gravity", "axis", "friction", "quantity", "anchored")
 """Fields of an item that may be filled in where the workbook leaves them blank."""

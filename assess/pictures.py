@@ -15,34 +15,25 @@ from assess.i18n import fill
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-MOST_BYTES = 10 * 2**20
-"""Bytes of a picture's file."""
-MOST_PIXELS = 50_000_000
-"""Pixels of a picture [-]: they take up to 200 MB while it is decoded."""
-SHOWN = 1600
-"""Pixels [-] of the longer side that a report shows: 300 to the inch of a logo of 13 cm."""
-PHOTO = 600
-"""Pixels of the longer side of a photo."""
-STRIP = 64
-"""Rows of pixels of the smaller picture that are made at once."""
+MOST_BYTES = 10 * 2**20  # bytes of a picture's file
+MOST_PIXELS = 50_000_000  # pixels of a picture [-]: they take up to 200 MB while it is decoded
+SHOWN = 1600  # pixels [-] of the longer side that a report shows: 300 to the inch of a logo of 13 cm
+PHOTO = 600  # pixels of the longer side of a photo
+STRIP = 64  # rows of pixels of the smaller picture that are made at once
 
-PNG, JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
-"""The first bytes of each."""
+PNG, JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"  # the first bytes of each
 _FORMATS = ("PNG", "JPEG")
 _FRAMES = frozenset({*range(0xC0, 0xD0)} - {0xC4, 0xC8, 0xCC})
 """Markers of JPEG's frame headers; the three are of tables."""
-_ALONE = frozenset({0x01, *range(0xD0, 0xD9)})
-"""Markers without a length."""
-_ORIENTATION = 0x0112
-"""Tag of Exif: how a camera was held."""
+_ALONE = frozenset({0x01, *range(0xD0, 0xD9)})  # markers without a length
+_ORIENTATION = 0x0112  # tag of Exif: how a camera was held
 _PRIVATE = frozenset({"exif", "xmp", "XML:com.adobe.xmp", "comment", "photoshop"})
 """What may tell who took a picture, where and when."""
 _PRIVATE_CHUNKS = frozenset({b"tEXt", b"zTXt", b"iTXt", b"eXIf", b"tIME"})
 _PRIVATE_SEGMENTS = frozenset({0xE1, *range(0xE3, 0xEE), 0xEF, 0xFE})
 """Markers of application data but JFIF, colour profile and Adobe's transform, and of comments."""
 _SCAN, _FILL = 0xDA, 0xFF
-_SHOWN_BY = frozenset({"transparency", "gamma", "icc_profile", "dpi"})
-"""What the look of a picture rests on."""
+_SHOWN_BY = frozenset({"transparency", "gamma", "icc_profile", "dpi"})  # what the look of a picture rests on
 
 
 class PictureError(InputError):

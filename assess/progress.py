@@ -11,10 +11,8 @@ from typing import Self, TypeVar
 
 from assess.errors import CancelledError
 
-ESTIMATE_FROM = 0.02
-"""Share of a stage [-] that has to be done before the time left is estimated."""
-ASKED_EVERY = 0.05
-"""Time [s] after which it is looked whether work that is waited for is to stop."""
+ESTIMATE_FROM = 0.02  # share of a stage [-] that has to be done before the time left is estimated
+ASKED_EVERY = 0.05  # time [s] after which it is looked whether work that is waited for is to stop
 
 _Found = TypeVar("_Found")
 
@@ -142,8 +140,7 @@ class Stage:
         self.progress.check()
 
 
-SILENT = Progress()
-"""Reports to nobody and never stops the work: the default everywhere."""
+SILENT = Progress()  # reports to nobody and never stops the work: the default everywhere
 
 _WAITS: ContextVar[Progress] = ContextVar("waits", default=SILENT)
 

@@ -128,5 +128,4 @@ FORMATS: Mapping[str, Format] = {
 }  # fmt: skip
 FILES: Mapping[str, str] = {one.key: one.file for one in FORMATS.values()}
 DEFAULT = tuple(one.key for one in FORMATS.values() if one.is_default)
-ALL = "all"
-"""In place of formats: every one, of those that need more packages where these are installed."""
+ALL = "all"  # in place of formats: every one, of those that need more packages where these are installed

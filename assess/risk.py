@@ -41,8 +41,7 @@ class RiskClass(IntEnum):
         return f"{self.symbol} {self.word}"
 
 
-LIMITS = (0.03, 0.3, 0.7)
-"""Lower limits of medium, high and very high [-]."""
+LIMITS = (0.03, 0.3, 0.7)  # lower limits of medium, high and very high [-]
 
 
 def classify(probability: float) -> RiskClass | None:
@@ -60,8 +59,7 @@ def classify_all(probability: ArrayLike) -> NDArray[np.int64]:
     return np.where(np.isnan(values), -1, np.searchsorted(LIMITS, values, side="right")).astype(np.int64)
 
 
-ENDS = (0.05, 0.95)
-"""Shares of the draws that do not exceed the ends of a range over earthquakes."""
+ENDS = (0.05, 0.95)  # shares of the draws that do not exceed the ends of a range over earthquakes
 
 
 def find_ends(numbers: ArrayLike | None) -> tuple[float, float] | tuple[None, None]:
@@ -72,8 +70,7 @@ def find_ends(numbers: ArrayLike | None) -> tuple[float, float] | tuple[None, No
     return low, high
 
 
-NORMAL_95 = 1.959963984540054
-"""Half width of the central 95 % of the standard normal distribution [-]."""
+NORMAL_95 = 1.959963984540054  # half width of the central 95 % of the standard normal distribution [-]
 
 
 def wilson_interval(count: ArrayLike, runs: ArrayLike, z: float = NORMAL_95) -> tuple[NDArray[np.float64], ...]:

@@ -36,8 +36,7 @@ ClassBy = Literal["best formula", "proposed OR"]
 CLASS_BY: tuple[str, ...] = get_args(ClassBy)
 """Which formula gives the class of what is not simulated: that which agrees best with simulation, or the paper's."""
 
-LONGEST_SHOWN = 40
-"""Characters of a wrong value that a message repeats."""
+LONGEST_SHOWN = 40  # characters of a wrong value that a message repeats
 
 
 def match_choice(text: str, choices: Iterable[str]) -> str | None:
@@ -118,8 +117,7 @@ _RULES: Mapping[str, _Rule] = {
     "route_risk": _number(lambda number: 0 < number < 1, fill("above 0 and below 1 (write 3 % as 0.03)")),
 }  # fmt: skip
 """What reads the value of each setting, None for one that cannot be used, and what was expected."""
-_BY_WORKBOOK = ("scenario", "class_by")
-"""Settings of which None stands for what the workbook says."""
+_BY_WORKBOOK = ("scenario", "class_by")  # settings of which None stands for what the workbook says
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -39,8 +39,7 @@ _DTYPES: Mapping[Kind, str] = {
     "text": "string", "class": "string", "number": "float64", "share": "float64", "count": "Int64", "flag": "boolean",
 }  # fmt: skip
 """Of the columns of a pandas table: the same whatever the rows are, also where there are none."""
-PART = 1000
-"""Rows whose columns and texts are made at a time."""
+PART = 1000  # rows whose columns and texts are made at a time
 _dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", ": ")).encode
 
 

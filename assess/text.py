@@ -17,8 +17,7 @@ _NO_TEXT = "\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff" + "".join(
 )
 """Control characters but tabs and line feeds, halves of characters, and numbers that Unicode gives to no character."""
 
-REPLACEMENT = "\ufffd"
-"""What stands in place of what is not text."""
+REPLACEMENT = "\ufffd"  # what stands in place of what is not text
 UNCLEAN = re.compile(f"([{_UNSEEN}])|[{_NO_TEXT}]")
 """Finds what `plain_text` takes out; group 1 matches what leaves nothing in its place."""
 

@@ -7,8 +7,7 @@ names.
 
 from collections.abc import Mapping
 
-GRAVITY = 9.80665
-"""Standard gravity [m/s2], the one value used everywhere."""
+GRAVITY = 9.80665  # standard gravity [m/s2], the one value used everywhere
 
 ROUNDING = 1e-9
 """Relative: what lies nearer to a limit than this lies on it, so that a change of units moves nothing across."""

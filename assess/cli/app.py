@@ -32,8 +32,7 @@ the shell.
 """
 TYPED = ("_TYPER_COMPLETE_ARGS", "COMP_WORDS")
 """Variables that hold the line as it is typed: of zsh, fish and PowerShell, and of bash."""
-BAD_USAGE, NOT_WRITTEN = 2, 1
-"""Exit status of a blank word, and of an output that cannot be written."""
+BAD_USAGE, NOT_WRITTEN = 2, 1  # exit status of a blank word, and of an output that cannot be written
 START = """\b
 Start here:
   assess new building.xlsx     a workbook to fill in; with --example a filled one

@@ -22,8 +22,7 @@ EXAMPLES = (
     "assess check building.xlsx 2> problems.txt",
 )
 
-MOST_SHOWN = 3
-"""Cells of one kind of correction that are listed; the rest are counted."""
+MOST_SHOWN = 3  # cells of one kind of correction that are listed; the rest are counted
 
 
 def command(

@@ -36,11 +36,9 @@ OPTIONS = (
     "scenario", "class_by", "verify", "runs", "seed", "scale", "anchor", "ideal", "scale_motions", "city", "route_risk",
 )  # fmt: skip
 """Settings that `assess run` has an option for."""
-_FILLED = (SCENARIOS[0], CLASS_BY[0])
-"""What stands for the workbook's own, where that says nothing else."""
+_FILLED = (SCENARIOS[0], CLASS_BY[0])  # what stands for the workbook's own, where that says nothing else
 PDF = "report.pdf"
-MOST_BYTES = 1 << 28
-"""Size [bytes] above which a workbook is not looked at."""
+MOST_BYTES = 1 << 28  # size [bytes] above which a workbook is not looked at
 
 Run = Annotated[
     Path, typer.Argument(help="A results.json of assess run, or the folder that holds it.", show_default=False)

@@ -19,8 +19,7 @@ from assess.version import __version__
 ORDER = 9
 EXAMPLES = ("assess doctor", "assess doctor > doctor.txt")
 
-FONTS = 8
-"""Fonts of the reports."""
+FONTS = 8  # fonts of the reports
 _REQUIREMENT = re.compile(
     r"(?P<name>[A-Za-z0-9._-]+)[^;>]*(>=\s*(?P<least>[0-9.]+))?[^;]*(;.*extra\s*==\s*['\"](?P<extra>[^'\"]+))?"
 )

@@ -21,8 +21,7 @@ EXAMPLES = (
     "assess export report --ifc building.ifc --out building-risk.ifc --bcf to-fix.bcfzip --force",
 )
 TOPICS = (".bcfzip", ".bcf")
-MOST_NAMED = 50
-"""Pieces that a line names; the rest are counted."""
+MOST_NAMED = 50  # pieces that a line names; the rest are counted
 
 
 def command(

@@ -24,8 +24,7 @@ EXAMPLES = (
     "assess import model.ifc --out building.xlsx --also IfcBuildingElementProxy",
     "assess import handover-cobie.xlsx --out building.xlsx --force",
 )
-MOST_CHANGES = 200
-"""Changes that are listed one by one."""
+MOST_CHANGES = 200  # changes that are listed one by one
 
 
 def command(

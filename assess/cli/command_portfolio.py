@@ -30,8 +30,7 @@ FORMATS = ("parquet", "xlsx", "html", "pdf")
 """Those of `assess.portfolio.run_portfolio`, which takes long to import."""
 REPEATED = ("verify", "runs", "seed", "scenario", "scale", "route_risk", "class_by", "ideal")
 """Settings of the run that the command for one building has an option for."""
-MOST_SKIPPED = 10
-"""Buildings that were skipped that are named at the end."""
+MOST_SKIPPED = 10  # buildings that were skipped that are named at the end
 EXAMPLE_MAP, EXAMPLE_COAST, EXAMPLE_INDEX = "grid.xml", "coast.geojson", "index.csv"
 """Files of the worked city that are used where no others are named."""
 

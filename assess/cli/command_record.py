@@ -28,8 +28,7 @@ EXAMPLES = (
 
 PERIODS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
 """Periods of the printed spectrum [s]."""
-MOST_DRAWN = 12
-"""Channels in one figure."""
+MOST_DRAWN = 12  # channels in one figure
 
 
 def command(

@@ -33,12 +33,9 @@ EXAMPLES = (
     "assess run building.xlsx --ground-motions oq-export --out scenarios",
 )
 
-MOST_METHODS = 4
-"""Fitted models that a report shows next to the published methods: a column each."""
-PLAIN = frozenset(("json", "csv", "xlsx"))
-"""Formats that need no series of figures."""
-OPENED = ("html", "pdf", "xlsx")
-"""Reports that --open opens: the first of these that was written."""
+MOST_METHODS = 4  # fitted models that a report shows next to the published methods: a column each
+PLAIN = frozenset(("json", "csv", "xlsx"))  # formats that need no series of figures
+OPENED = ("html", "pdf", "xlsx")  # reports that --open opens: the first of these that was written
 UNCONFIRMED = "nothing is known of the building, or the motions may be too weak for a lower class to rest on."
 """What the count of unconfirmed pieces means."""
 

@@ -30,8 +30,7 @@ _FILES = {(one.parent.name if one.stem == "__init__" else one.stem): one for one
 _STUDIES = sorted(name for name, file in _FILES.items() if "\nSTUDY = " in file.read_text(encoding="utf-8"))
 NAMES = ", ".join(_STUDIES)
 """Names of the studies, which are those of their modules: importing them for ``--help`` would take seconds."""
-FEWEST, MOST = 20, 1000
-"""Fewest and most motions: a share of fewer is too uncertain."""
+FEWEST, MOST = 20, 1000  # fewest and most motions: a share of fewer is too uncertain
 
 
 def command(

@@ -29,12 +29,9 @@ from assess.i18n import count
 from assess.progress import Progress, Report
 from assess.text import plain_line, plain_text
 
-MOST_PRINTED = 200
-"""Problems printed in one run; the rest are counted."""
-LONGEST_NAME = 80
-"""Characters of the name of a file that a message shows where the system refuses the name."""
-REDRAW = 0.2
-"""Shortest time between two states of the line on a terminal [s]."""
+MOST_PRINTED = 200  # problems printed in one run; the rest are counted
+LONGEST_NAME = 80  # characters of the name of a file that a message shows where the system refuses the name
+REDRAW = 0.2  # shortest time between two states of the line on a terminal [s]
 QUIET, REPEAT, LOOK = 2.0, 5.0, 0.5
 """Away from a terminal: silence at first, a line so often after that, and how often it is looked at [s]."""
 STAGES = {
@@ -260,8 +257,7 @@ class _Line:
         self._written, self._due = now, now + REPEAT
 
 
-_NOTHING = Report("", 1.0, "", None)
-"""The state between two stages."""
+_NOTHING = Report("", 1.0, "", None)  # the state between two stages
 
 
 def describe_progress(report: Report) -> str:

@@ -25,21 +25,17 @@ LINES = (
     ("#9a6a00", "-", "v"), ("#117a8b", "--", "x"), ("#444444", "-.", "+"), ("#c2410c", ":", "*"),
 )  # fmt: skip
 """Colour, line and marker of the curves of a panel; the last two tell them apart without colour."""
-ROOM = 130
-"""Characters of a line beside one panel."""
+ROOM = 130  # characters of a line beside one panel
 ROUTES_A_PANEL, MOST_ROUTE_PANELS = 8, 6
 MOST_MARKS = 10
-LONGEST = 600
-"""Characters of the verdict."""
-MOST_NAMED = 12
-"""Routes that no piece can block whose names are listed."""
+LONGEST = 600  # characters of the verdict
+MOST_NAMED = 12  # routes that no piece can block whose names are listed
 MEANING = (
     "Chance that a route is blocked if its floors shake with the PFA along both axes; anchors hold. Light bands or "
     "bars: its range. Thin dots: a jump. Broad: the scenario's PFA on the route's floors."
 )
 CURVES_A_PANEL, MOST_CURVE_PANELS = 6, 4
-POINTS = 200
-"""Points of a fitted curve."""
+POINTS = 200  # points of a fitted curve
 TICKS = (1, 2, 3, 5, 7)
 
 _Row = TypeVar("_Row")

@@ -21,12 +21,9 @@ from assess.units import GRAVITY, LENGTH, to_edge
 
 SCHEMA = "1.0"
 """Version of the document's shape: the first number changes where a key goes or gets another meaning."""
-MOST_LINES = 200
-"""Curves that the text lists; files and the document hold all."""
-MOST_NAMES = 8
-"""Names of curves that a line of those left out lists."""
-COLUMNS: Mapping[str, str] = {"pfa": "pfa_g", "pfv": "pfv_cm_s"}
-"""Names of the levels in files."""
+MOST_LINES = 200  # curves that the text lists; files and the document hold all
+MOST_NAMES = 8  # names of curves that a line of those left out lists
+COLUMNS: Mapping[str, str] = {"pfa": "pfa_g", "pfv": "pfv_cm_s"}  # names of the levels in files
 DECIMALS = 12
 PIECES_DRAWN = (
     "Each draw has a base, height, centre of gravity and restitution of its own (Piece uncertainty of the sheet "

@@ -23,15 +23,11 @@ from contextlib import contextmanager
 NAMES = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 NUMBERS = tuple(int(getattr(signal, name)) for name in NAMES if hasattr(signal, name))
 """The signals that are answered, as far as the system has them."""
-PATIENCE = 0.4
-"""Time that the work has to stop by itself before it is interrupted [s]."""
-CLEANING = 2.0
-"""Time that it then has to clean up before it is interrupted again [s]."""
-MOST = 3
-"""Interrupts after which the process is ended wherever it is."""
+PATIENCE = 0.4  # time that the work has to stop by itself before it is interrupted [s]
+CLEANING = 2.0  # time that it then has to clean up before it is interrupted again [s]
+MOST = 3  # interrupts after which the process is ended wherever it is
 
-heard: list[int] = []
-"""The signals since this command began, in their order: a process has one set of them."""
+heard: list[int] = []  # the signals since this command began, in their order: a process has one set of them
 
 
 def answer_signals() -> None:

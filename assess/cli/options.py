@@ -17,8 +17,7 @@ from assess.settings import AUTO, CLASS_BY, MOST_SCALE, RUNS, SCENARIOS, SEED, V
 if TYPE_CHECKING:
     from assess.motion.site_ground import GroundField
 
-FIGURES = (".png", ".svg", ".pdf")
-"""Kinds of figures that can be written."""
+FIGURES = (".png", ".svg", ".pdf")  # kinds of figures that can be written
 
 # ---------------------------------------------------------------- what completes an option in a shell
 
@@ -87,8 +86,7 @@ def read_factor(text: str | float) -> float:
     return number / 100 if typed.endswith("%") else number
 
 
-SIZE: dict[str, Any] = {"parser": read_size, "metavar": "<float>"}
-"""Of an option that takes a length [cm]."""
+SIZE: dict[str, Any] = {"parser": read_size, "metavar": "<float>"}  # of an option that takes a length [cm]
 Scale = Annotated[
     float,
     typer.Option(

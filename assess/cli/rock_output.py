@@ -28,10 +28,8 @@ SIDES: Mapping[str, Away] = {"negative_side": 1, "positive_side": -1}
 """On which side of the block the wall is, by the sign of the record, and to which it can turn then."""
 HIGHEST_DRAWN = 2.0
 """Largest rotation that the figure shows of a block that overturns, as a share of the critical angle [-]."""
-MOST_POINTS = 12_000
-"""Points of the drawn path."""
-LONGEST_NAME = 60
-"""Characters of the record's name that the figure shows."""
+MOST_POINTS = 12_000  # points of the drawn path
+LONGEST_NAME = 60  # characters of the record's name that the figure shows
 RECORD, AFTER, PATH, MARK = "#444444", "#b8b8b8", "#1b4f72", "#b03a2e"
 BOX = {"facecolor": "white", "edgecolor": "none", "pad": 1, "alpha": 0.85}
 """What stands behind a note in the figure."""

@@ -20,14 +20,10 @@ from assess.route_results import Chance
 from assess.units import GRAVITY
 from assess.version import __version__, versions
 
-LEVELS = (0.03, 0.3, 0.5)
-"""Chances of blockage whose PFA is given [-]."""
-MOST_CAUSES = 6
-"""Pieces named in the lines of a route."""
-A_LINE = 12
-"""Values side by side in the text."""
-WIDE = 110
-"""Characters of a line of its sentences."""
+LEVELS = (0.03, 0.3, 0.5)  # chances of blockage whose PFA is given [-]
+MOST_CAUSES = 6  # pieces named in the lines of a route
+A_LINE = 12  # values side by side in the text
+WIDE = 110  # characters of a line of its sentences
 VERDICT_ROUTES, VERDICT_PIECES, LONGEST = 3, 4, 40
 """Routes, and pieces of a route, that the text of the verdict names, and characters of a name; the data has all."""
 HEADS = (

@@ -14,12 +14,9 @@ from assess.errors import InputError
 from assess.i18n import fill
 
 MOST_BYTES = 20_000_000
-MOST_POINTS = 400_000
-"""Size of the file and points in it that are read: a map of a city needs no more."""
-Place = tuple[float, float]
-"""Longitude and latitude [deg]."""
-_DEEPEST = 8
-"""Depth to which collections may hold collections."""
+MOST_POINTS = 400_000  # points of a file that are read: a map of a city needs no more
+Place = tuple[float, float]  # longitude and latitude [deg]
+_DEEPEST = 8  # depth to which collections may hold collections
 _WORLD = ("CRS84", "4326")
 _DIMENSIONS = {"LineString": 1, "MultiLineString": 2, "Polygon": 2, "MultiPolygon": 3}
 _MEMBERS = {"FeatureCollection": "features", "GeometryCollection": "geometries"}

@@ -38,8 +38,7 @@ from assess.workbook.names import key
 from assess.workbook.read import Rows, is_cobie, read_inventory
 from assess.workbook.schema import BUILDING, ITEMS
 
-APART = 0.01
-"""Degrees, some 1 km, by which a place of the index may differ from that of the workbook."""
+APART = 0.01  # degrees, some 1 km, by which a place of the index may differ from that of the workbook
 
 
 def read_building(source: Source, data: bytes | None, ground: GroundField | None) -> tuple[Origin, Inventory]:
@@ -123,12 +122,9 @@ _ALIKE: Mapping[str, Callable[[Any, Any], bool]] = {
 # ---------------------------------------------------------------- assumed inventories
 
 
-SQUARE_FOOT = LENGTH["ft"] ** 2
-"""[m2]."""
-STOREY_HEIGHT = 4.0
-"""Of a building whose height is not known [m]: assumed, on the high side for offices."""
-BOOKCASE_WIDTH = 91.4
-"""3 ft [cm], as the component of P-58 is named."""
+SQUARE_FOOT = LENGTH["ft"] ** 2  # [m2]
+STOREY_HEIGHT = 4.0  # of a building whose height is not known [m]: assumed, on the high side for offices
+BOOKCASE_WIDTH = 91.4  # 3 ft [cm], as the component of P-58 is named
 USES: Mapping[str, tuple[str, ...]] = {
     "office": ("office", "offices", "commercial office", "ufficio"),
     "healthcare": ("healthcare", "health care", "hospital", "hospitals", "clinic", "medical"),

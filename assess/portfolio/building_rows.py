@@ -23,12 +23,9 @@ from assess.units import to_edge
 from assess.workbook.schema import BUILDING, USES
 
 Record = dict[str, Any]
-OWN_MOTIONS = ("record", "given")
-"""Sources of a floor's motion that are not of the ground motion of the run."""
-MOST_PROBLEMS = 200
-"""Problems of one building that the tables hold; the rest is counted."""
-MOST_BLOCKERS = 20
-"""Pieces that a route names."""
+OWN_MOTIONS = ("record", "given")  # sources of a floor's motion that are not of the ground motion of the run
+MOST_PROBLEMS = 200  # problems of one building that the tables hold; the rest is counted
+MOST_BLOCKERS = 20  # pieces that a route names
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -31,8 +31,7 @@ from assess.portfolio.table_schemas import TABLES
 from assess.settings import Settings
 from assess.version import find_code
 
-FOLDER = "parts"
-"""Folder of the parts in the folder of the results."""
+FOLDER = "parts"  # folder of the parts in the folder of the results
 ENDING = ".part"
 WRITING = ".writing-"
 

@@ -27,8 +27,7 @@ from assess.rocking.draws import name_number
 from assess.route_results import RouteState
 from assess.settings import Settings
 
-FEW = 10
-"""Draws with anything in them below which the normal distribution of a mean is not relied on."""
+FEW = 10  # draws with anything in them below which the normal distribution of a mean is not relied on
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,8 +96,7 @@ def find_sampling(total: FloatArray, most: float) -> tuple[float, float]:
 BASES = ("simulated", "formula")
 GROUPS = tuple((inventory, basis) for inventory in INVENTORIES for basis in BASES)
 """Inventory and basis of each group, in the order in which they are shown."""
-FIRST = 10
-"""Buildings, and types of furniture, that are named as those to start with."""
+FIRST = 10  # buildings, and types of furniture, that are named as those to start with
 BUILDING_RULE = fill(
     "Ranked by the expected number of people on blocked routes (in whole people), then by expected falls."
 )
@@ -107,11 +105,9 @@ PEOPLE_RULE = fill(
     "floor and then that of a stair is counted twice."
 )
 TYPE_RULE = fill("Ranked by expected falls; pieces without a Type are grouped by their size.")
-BREADTH_STEP, HEIGHT_STEP = 10, 20
-"""Widths of the groups of sizes [cm]."""
+BREADTH_STEP, HEIGHT_STEP = 10, 20  # widths of the groups of sizes [cm]
 
-Row = Mapping[str, Any]
-"""One row of a table: values by column, None for what is not known."""
+Row = Mapping[str, Any]  # one row of a table: values by column, None for what is not known
 _MOTIONS = fill(
     "In nine of ten motions like the given ones, without the uncertainty of the earthquake: between {low} and {high}.",
     low="", high="",

@@ -139,20 +139,16 @@ def sign_of_routes(row: Row) -> Sign:
 # ---------------------------------------------------------------- the map
 
 
-EARTH = 6371.0
-"""Mean radius of the Earth [km]."""
+EARTH = 6371.0  # mean radius of the Earth [km]
 SEA, GROUND = "#e3ebf1", "#f3f3f0"
 """Colour behind a map with a background, which is water where that has no area, and without one."""
 WIDE, LOWEST, HIGHEST = 1000.0, 560.0, 1000.0
 """Width of the drawing, and the least and the most height of it [px]."""
-TALLEST = 46.0
-"""Height on a screen at most [rem]."""
-MARGIN, LEAST = 0.07, 1.0
-"""Free space round the buildings: share of their extent, and at least [km]."""
+TALLEST = 46.0  # height on a screen at most [rem]
+MARGIN, LEAST = 0.07, 1.0  # free space round the buildings: share of their extent, and at least [km]
 _STEPS = (1, 2, 5)
 _DEGREES = (10.0, 5.0, 2.0, 1.0, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
-FINE = 0.4
-"""Detail of the background that is drawn [px]."""
+FINE = 0.4  # detail of the background that is drawn [px]
 LEVELS = (0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
 """PGA of the lines [g]."""
 STEPS = 48

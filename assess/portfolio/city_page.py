@@ -48,8 +48,7 @@ from assess.units import GRAVITY
 from assess.version import __version__
 from assess.workbook.template import CREATED
 
-LARGE = ((10.0, 1.6), (3.0, 1.25))
-"""Expected falls from which a mark on the map is larger, and by how much."""
+LARGE = ((10.0, 1.6), (3.0, 1.25))  # expected falls from which a mark on the map is larger, and by how much
 MOST_SKIPPED, MOST_PRINTED = 200, 12
 """Skipped buildings that the page and the summary name; the ranking names all."""
 
@@ -359,12 +358,9 @@ def _tabulate_sums(city: City) -> blocks.Table:
     return blocks.table(columns, rows, "sums")
 
 
-MOST_ROWS = 150
-"""Rows of one table of a building that the page holds; the tables of the portfolio have all."""
-LONGEST = 300
-"""Characters of a text that the page holds."""
-STOREYS = ((1, 1), (2, 3), (4, 7), (8, 300))
-"""Groups of storeys in the filter."""
+MOST_ROWS = 150  # rows of one table of a building that the page holds; the tables of the portfolio have all
+LONGEST = 300  # characters of a text that the page holds
+STOREYS = ((1, 1), (2, 3), (4, 7), (8, 300))  # groups of storeys in the filter
 
 
 def write_data(city: City, repeat: str, indexed: Collection[str] = ()) -> str:

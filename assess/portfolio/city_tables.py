@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     import duckdb
     import pandas as pd
 
-ROWS = 100_000
-"""Rows of one file at most."""
+ROWS = 100_000  # rows of one file at most
 SQL_TYPES: dict[Kind, str] = {"text": "VARCHAR", "number": "DOUBLE", "count": "BIGINT", "flag": "BOOLEAN"}
 FRAME_TYPES: dict[Kind, str] = {"text": "object", "number": "float64", "count": "Int64", "flag": "boolean"}
 """Types of pandas: what is not known is None, NaN, NA and NA."""

@@ -31,10 +31,8 @@ from assess.version import __version__, find_code
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-WINDOW = 8
-"""Tasks that are handed to the scheduler at once, a worker."""
-CONNECTING, JOINING = 10.0, 30.0
-"""Times [s] that the scheduler, and its first worker, are waited for."""
+WINDOW = 8  # tasks that are handed to the scheduler at once, a worker
+CONNECTING, JOINING = 10.0, 30.0  # times [s] that the scheduler, and its first worker, are waited for
 _ASKED_EVERY = 0.5
 _PROBE = ".probe-"
 _ADDRESS = re.compile(

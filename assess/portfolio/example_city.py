@@ -34,10 +34,8 @@ SEED = 19891017
 SCENARIO = "Loma Prieta, 17 October 1989, by the ShakeMap of the U.S. Geological Survey. The building is made up."
 DRAWN: Mapping[str, Any] = tomllib.loads(files("assess.portfolio").joinpath("example_city.toml").read_text("utf-8"))
 """What the buildings and their furniture are drawn from."""
-GRID_STEP, ACROSS = 2.4, 12
-"""Distance between pieces on a plan [m], and pieces in a row of it."""
-OFFSHORE = 0.004
-"""Least distance to the coastline [deg], which is a generalised one."""
+GRID_STEP, ACROSS = 2.4, 12  # distance between pieces on a plan [m], and pieces in a row of it
+OFFSHORE = 0.004  # least distance to the coastline [deg], which is a generalised one
 
 
 @dataclass(frozen=True, slots=True)

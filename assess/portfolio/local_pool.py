@@ -21,14 +21,11 @@ from assess.errors import CancelledError, OutputError
 from assess.portfolio.building_task import Summary, Task, give_up
 from assess.progress import SILENT, Progress
 
-MOST_DEATHS = 3
-"""Processes that may die of one building before it is skipped."""
-MOST_STARTS = 3
-"""Processes in a row that may end before they are ready: then none can be started here."""
+MOST_DEATHS = 3  # processes that may die of one building before it is skipped
+MOST_STARTS = 3  # processes in a row that may end before they are ready: then none can be started here
 ALONE = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Variables by which libraries take no more than one thread."""
-_ASKED_EVERY = 0.1
-"""Time [s] after which it is looked whether the work is to stop."""
+_ASKED_EVERY = 0.1  # time [s] after which it is looked whether the work is to stop
 Process = subprocess.Popen[bytes]
 
 

@@ -25,10 +25,8 @@ from assess.workbook.template import CREATED
 
 SUM = "#,##0.0"
 """How Excel shows an expected number."""
-MOST_PIECES = 500
-"""Pieces that the sheet of what to fix first holds; the tables of the portfolio have all."""
-MOST_PROBLEMS = 5_000
-"""Problems that the sheet of skipped buildings holds."""
+MOST_PIECES = 500  # pieces that the sheet of what to fix first holds; the tables of the portfolio have all
+MOST_PROBLEMS = 5_000  # problems that the sheet of skipped buildings holds
 
 
 def render_ranking(city: City, *, options: ReportOptions | None = None, progress: Progress = SILENT) -> bytes:
@@ -121,8 +119,7 @@ def _list_sums() -> list[tuple[str, Callable[[Group], float | None], str]]:
     ]
 
 
-Listing = tuple[list[Column], Sequence[Any]]
-"""The columns of a sheet, and its rows."""
+Listing = tuple[list[Column], Sequence[Any]]  # the columns of a sheet, and its rows
 
 
 def _list_buildings(city: City) -> Listing:

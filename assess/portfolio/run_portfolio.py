@@ -35,8 +35,7 @@ if TYPE_CHECKING:
     from assess.portfolio.city import City, RunGround
 
 STAGE = "buildings"
-VERSION = "1"
-"""Of the shape of portfolio.json."""
+VERSION = "1"  # of the shape of portfolio.json
 DATA = "portfolio.json"
 FILES: Mapping[str, str] = {"xlsx": "ranking.xlsx", "html": "city.html", "pdf": "city.pdf"}
 """Reports by their format; the format parquet gives files of the names of `TABLES`."""

@@ -33,16 +33,12 @@ MOST_BUILDINGS = 200_000
 OURS = {"report.xlsx": "results.json", "ranking.xlsx": "portfolio.json", "compare.xlsx": "compare.json"}
 """Workbooks that are results of `assess`, where the file that lists them lies next to them."""
 
-LARGEST_FILE = 64_000_000
-"""Bytes: some hundred thousand rows."""
+LARGEST_FILE = 64_000_000  # bytes: some hundred thousand rows
 MOST_ROWS = 200_000
-LONGEST = 4000
-"""Characters of a cell."""
-MOST_FAULTS = 20
-"""Faults that one message lists."""
+LONGEST = 4000  # characters of a cell
+MOST_FAULTS = 20  # faults that one message lists
 
-MOST_LINES = 10
-"""Lines that a message on a repeated name lists."""
+MOST_LINES = 10  # lines that a message on a repeated name lists
 
 _NUMBER = re.compile(r"([+-]?)(\d[\d.,' ]*|[.,]\d+)(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
 _FIELDS: Mapping[str, str] = {
@@ -50,8 +46,7 @@ _FIELDS: Mapping[str, str] = {
     "height_m": "height", "ground_pga_g": "ground_pga",
 }  # fmt: skip
 """Columns of the index, and the line of the sheet Building that each fills in, whose limits hold for numbers."""
-_LARGEST_AREA = 10_000_000.0
-"""Gross floor area [m2] above which a number is a slip."""
+_LARGEST_AREA = 10_000_000.0  # gross floor area [m2] above which a number is a slip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

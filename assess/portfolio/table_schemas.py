@@ -20,8 +20,7 @@ CLASS_COLUMNS: Mapping[RiskClass, str] = {risk: risk.word.replace(" ", "_") for 
 STATE_COLUMNS: Mapping[RouteState, str] = {state: f"routes_{state.replace(' ', '_')}" for state in RouteState}
 """Columns of the table buildings that count pieces by class, and routes by state."""
 
-MADE_UP = "(made up)"
-"""What the names of the buildings of the worked city end with."""
+MADE_UP = "(made up)"  # what the names of the buildings of the worked city end with
 
 
 def _fields(*rows: tuple[str, Kind, str] | tuple[str, Kind, str, str]) -> tuple[Field, ...]:
