@@ -7,5 +7,5 @@ Way: each reader yields a `building_model.BuildingModel` (`ifc_model`, `roomplan
 own); `model_rows` makes rows of it, `draft_routes` routes, `import_workbook` the workbook; `update_workbook` goes
 through `assess.workbook.store`; `export_files` writes results back. Readers run in a process with limits
 (`model_process`).
-May import: the core. Needs: `pip install 'assess[ifc]'` for IFC alone.
+May import: the core. Needs: the extra `ifc` for IFC alone.
 """

@@ -5,5 +5,5 @@ Out: JSON for the page (`endpoints`), the workbook with its edits, reports by a 
 Way: `server` starts, `guard` checks each request, `sessions` keeps one `book.Book` a user, which is the workbook of
 `assess.workbook.store` with a history; `snapshot` is one version of it, `evaluation` and `live` what the core says of
 it. The browser's side is in `page/`; docs/page.md describes both.
-May import: the core, and `bim` where a building model is sent. Needs: `pip install 'assess[web]'`.
+May import: the core, and `bim` where a building model is sent. Needs: the extra `web`.
 """
