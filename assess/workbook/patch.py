@@ -146,7 +146,7 @@ def _shift_rows(book: Book, sheet: str, shift: RowShift) -> None:
             book.changed[path] = shift_shapes(book.part_bytes(path), shift)
         elif is_own or path == WORKBOOK or (path.startswith(_ALSO) and path.endswith(".xml")):
             data = book.part_bytes(path)
-            if is_own or escape(sheet, quote=False).encode() in data:
+            if is_own or any(escape(one, quote=False).encode() in data for one in (sheet, sheet.replace("'", "''"))):
                 book.changed[path] = _move(path, PartShift(sheet, is_own, shift), data)
 
 

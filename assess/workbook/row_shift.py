@@ -180,8 +180,11 @@ _FORMULAS = frozenset({"f", "formula", "formula1", "formula2", "definedName", "c
                        "totalsRowFormula", "fmlaLink", "fmlaRange"})  # fmt: skip
 """Elements and attributes whose text is a formula."""
 _GO = frozenset({"mergeCell", "hyperlink", "dataValidation", "conditionalFormatting", "ignoredError", "protectedRange",
-                 "comment", "threadedComment", "cellWatch", "sparkline", "brk"})  # fmt: skip
+                 "comment", "threadedComment", "cellWatch", "sparkline", "brk", "autoFilter", "sortState",
+                 "sortCondition"})  # fmt: skip
 """Elements that go with the cells that they are about."""
+_VIEWS = frozenset({"selection", "pane", "sheetView", "dimension"})
+"""Elements of which the first cell is left where their cells go."""
 _EMPTY = re.compile(
     r"<((?:\w+:)?(?:mergeCells|hyperlinks|dataValidations|ignoredErrors|protectedRanges|cellWatches|rowBreaks|"
     r"sparklines|sparklineGroup|sparklineGroups|conditionalFormattings|ext|extLst))(?=[\s>])[^>]*>\s*</\1>"
@@ -218,8 +221,8 @@ class PartShift:
         self.out: list[str] = []
         self.open: list[tuple[str, int]] = []
         """The elements that are open: name, and where in the output they begin."""
-        self.skipped = 0
-        """How many elements, of one that is cut out, are open."""
+        self.skipped, self.has_cut = 0, False
+        """How many elements, of one that is cut out, are open; whether one was cut out."""
         self.place = (0, 0)
         """Row and column of the cell that is read, as before."""
         self.moved_row: int | None = 0
@@ -246,7 +249,7 @@ class PartShift:
         if self.open:
             raise NotMovedError(fill("its tags do not match"))
         moved, before = "".join(self.out), ""
-        while moved != before:
+        while self.has_cut and moved != before:
             before, moved = moved, _EMPTY.sub("", moved)
         return moved.encode()
 
@@ -299,7 +302,7 @@ class PartShift:
         elif attributes.strip():
             kept = self._attributes(name, attributes)
         if kept is None:
-            self.skipped = 0 if closed else 1
+            self.skipped, self.has_cut = 0 if closed else 1, True
             self.out.append(after if closed else "")
             return
         if not closed:
@@ -308,7 +311,7 @@ class PartShift:
             text = self._text(name, attributes, after)
             if text is None:
                 at = max(at for at, (one, _) in enumerate(self.open) if one.rpartition(":")[2] in _GO)
-                self.skipped = len(self.open) - at
+                self.skipped, self.has_cut = len(self.open) - at, True
                 del self.out[self.open[at][1] :], self.open[at:]
                 return
             after = text
@@ -413,8 +416,9 @@ class PartShift:
             elif self.shift and (key in _FORMULAS or (name == "hyperlink" and key == "location")):
                 moved = shift_formula(value, self.sheet, False, self.move)
             if moved is None:
-                is_gone = name in _GO
-                moved = "A1"  # what is left of a view or a sorting is the first cell
+                if name not in _GO | _VIEWS:
+                    raise NotMovedError(fill("it refers to rows that are deleted"))
+                is_gone, moved = is_gone or name in _GO, "A1"
             quote = found[4][0]
             text = escape(moved, quote=False).replace(quote, "&quot;" if quote == '"' else "&apos;")
             return found[0] if moved == value else f"{found[1]}{key}{found[3]}{quote}{text}{quote}"

@@ -1,11 +1,14 @@
 """Benchmark of the workbook store: a workbook read, changed and written, against openpyxl, which rewrites all of it."""
 
 import io
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import openpyxl
 
+from assess.web import book as page
+from assess.workbook.open import MAX_MERGED, Book
 from assess.workbook.read import open_workbook
 from assess.workbook.template import Content, write_workbook
 from tests.benchmarks.measuring import compare, list_items, spent
@@ -24,6 +27,10 @@ def rows(folder: Path) -> Iterator[str]:
     for count in (1_000, 20_000):
         paths[f"{count:,} rows"] = folder / f"stored-{count}.xlsx"
         write_workbook(paths[f"{count:,} rows"], Content({"Floors": FLOORS, "Items": list_items(count)}))
+    data = paths["1,000 rows"].read_bytes()
+    merged = _merge(data)
+    ours, theirs, ratio = compare(lambda: _edit(merged), lambda: _edit(data), spent, ROUNDS)
+    yield f"| 16,384 merged cells, or none | 4,000 cells set | {1e3 * ours:.0f} | {1e3 * theirs:.0f} | {ratio:.3f} |"
     for name, path in paths.items():
         data = path.read_bytes()
         for work, own, other in (
@@ -32,6 +39,26 @@ def rows(folder: Path) -> Iterator[str]:
         ):
             ours, theirs, ratio = compare(lambda: own(data), lambda: other(data), spent, ROUNDS)  # noqa: B023 - at once
             yield f"| {name} | {work} | {1e3 * ours:.0f} | {1e3 * theirs:.0f} | {ratio:.3f} |"
+
+
+def _merge(data: bytes) -> bytes:
+    """Return a workbook with as many merged cells in Items as are read."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        parts = {info.filename: archive.read(info) for info in archive.infolist()}
+    areas = "".join(f'<mergeCell ref="GA{row}:GB{row}"/>' for row in range(50_000, 50_000 + MAX_MERGED))
+    with Book(data, "book.xlsx") as book:
+        path = book.sheets["Items"]
+    parts[path] = parts[path].replace(b"</sheetData>", f"</sheetData><mergeCells>{areas}</mergeCells>".encode())
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, part in parts.items():
+            archive.writestr(name, part)
+    return packed.getvalue()
+
+
+def _edit(data: bytes) -> None:
+    book = page.Book.hold("book.xlsx", data, Path())
+    book.edit(book.version, [["Items", row, 3, "x"] for row in range(2000, 6000)], "paste")
 
 
 def _set(data: bytes) -> None:

@@ -198,6 +198,7 @@ REFUSED = {
     '<sheetData><row r="2"><c r="A2"><f t="array" ref="A2:A5">B2:B5</f></c></row></sheetData>': "array formula",
     "<sheetData><row><c><v>1</v></c></row></sheetData>": "its rows have no numbers",
     '<sheetData><!-- a --><row r="1"/></sheetData>': "comments or raw text",
+    '<sheetData><row r="9"><c r="A9"><f t="dataTable" ref="B9:B9" r1="A3"/></c></row></sheetData>': "rows that are deleted",
 }
 
 
@@ -205,7 +206,7 @@ def test_what_cannot_be_moved_with_certainty_is_refused() -> None:
     for rows, message in REFUSED.items():
         book = open_workbook(minimal(rows), "book.xlsx")
         with pytest.raises(WorkbookError, match=message):
-            book.insert_rows("Items", 3).to_bytes()
+            (book.delete_rows("Items", 3) if "deleted" in message else book.insert_rows("Items", 3)).to_bytes()
     table = open_workbook((WORKBOOKS / "data" / "workbooks" / "table.xlsx").read_bytes(), "book.xlsx")
     for first, count in ((1, 1), (2, 9)):
         with pytest.raises(WorkbookError, match="a table keeps its headers"):
@@ -238,6 +239,15 @@ def test_every_formula_gives_what_it_gave(tmp_path: Path, name: str) -> None:
     others = {key: both for key, both in differing.items() if key[0] not in ("Lists", "My analysis")}
     assert {cell.rstrip("0123456789") for _, cell in others} <= counted, others
     assert len(old) > 100
+
+
+def test_sheets_are_found_by_names_that_formulas_quote() -> None:
+    packed = io.BytesIO()
+    with xlsxwriter.Workbook(packed) as book:
+        book.add_worksheet("Joe's R&D").write_column(0, 0, [1, 2, 3])
+        book.add_worksheet("Other").write_formula("A1", "='Joe''s R&D'!A3", None, 3)
+    data = open_workbook(packed.getvalue(), "book.xlsx").insert_rows("Joe's R&D", 2).to_bytes()
+    assert openpyxl.load_workbook(io.BytesIO(data))["Other"]["A1"].value == "='Joe''s R&D'!A4"
 
 
 def test_areas() -> None:

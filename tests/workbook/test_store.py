@@ -157,7 +157,7 @@ def _show(sheet: Worksheet) -> dict[str, Any]:
 def test_any_edits_of_a_rich_workbook_read_as_they_were_made(path: Path) -> None:
     """read(bytes(edit(x))) == edit(read(x)): cells, formulas, formats, merged cells, tables, what is hidden or locked."""
     draw = random.Random(path.name)
-    for _ in range(8):
+    for _ in range(10):
         book = open_workbook(path.read_bytes(), path.name)
         for _ in range(10):
             book = _edit(book, draw)
