@@ -147,8 +147,8 @@ class ListsWriter:
             self.page.write_column(2, at + 1, ("SI", *units.values()))
             self._name(f"units_{quantity}", LISTS, xl_col_to_name(at), 4, 3 + len(units), xl_col_to_name(at + 1))
             at += 2
-        self._write_definitions(at + 1)
-        at = self._write_columns(at + 4, [(name, name, values) for name, values in _list_nodes()])
+        at = self._write_definitions(at + 1)
+        at = self._write_columns(at + 1, [(name, name, values) for name, values in _list_nodes()])
         at = self._write_rows(at + 1, "Floors", "floor", _FLOOR_HELPERS, _of_floor)
         self._write_rows(at + 1, "Catalogue", "type", _TYPE_HELPERS, _of_type)
         for name in ("Floors", "Catalogue", "Places", "Routes"):
@@ -169,7 +169,7 @@ class ListsWriter:
             at += 1
         return at
 
-    def _write_definitions(self, at: int) -> None:
+    def _write_definitions(self, at: int) -> int:
         """Write cells that have a name each: factors of headers, words, the scenario, the ground and the building."""
         self.page.write_row(2, at, (gettext("header"), gettext("factor")))
         letter, sheets = xl_col_to_name(at + 1), {sheet.name: sheet for sheet in SHEETS}
@@ -211,6 +211,7 @@ class ListsWriter:
             self.page.write_string(row - 1, at, label)
             self.page.write_formula(row - 1, at + 1, f"={formula}", None, value)
             self.book.define_name(name, f"={gettext(LISTS)}!${letter}${row}")
+        return at + 2
 
     def _write_rows(
         self, at: int, sheet: str, prefix: str, names: Sequence[str],
