@@ -233,6 +233,7 @@ class _Home:
         doors = [one for one in passages if one.bottom <= SILL]
         pieces, skipped = _sort_pieces(boxes, SpaceSearch(spaces))
         warnings, remarks = [DRAWN_SIZES] if pieces else [], list[Text]()
+        north = self.number(self.compass, "northDirection", 0.0) if self.compass else 0.0
         walls, windows = dict[str, tuple[Area, ...]](), dict[str, tuple[Area, ...]]()
         for storey in storeys:
             walls[storey.key] = self._draw_walls(storey.key, passages, remarks)
@@ -244,7 +245,6 @@ class _Home:
             taken, left = ([one for one, reason in own if reason == why] for why in (None, NOT_ON_FLOOR))
             bounds = (np.array([one.bounds for one in each]) for each in (taken, left))
             warnings += note_stacked([one.name for one in taken], *bounds)
-        north = self.number(self.compass, "northDirection", 0.0) if self.compass else 0.0
         return BuildingModel(
             source=self.name, schema=SCHEMA, storeys=storeys, spaces=tuple(spaces),
             doors=tuple(
