@@ -2,7 +2,7 @@
 
 import math
 import uuid
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -90,7 +90,13 @@ def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[s
             boxes = _find_boxes(model, [found[key] for key in placed if key in found], unit)
             rooms = list(_find_boxes(model, model.by_type("IfcSpace"), unit).values()) if boxes else []
             rooms.sort(key=lambda box: math.prod(high - low for low, high in zip(*box, strict=True)))
-            doors = list(_list_doors(model, unit))
+            door_boxes = _find_boxes(model, model.by_type("IfcDoor"), unit)
+            for one in model.by_type("IfcDoor"):  # its origin is at one of its jambs, its opening lies along X
+                middle = float(one.OverallWidth or 0.0) * unit / 2
+                places = [place for along in (0.0, middle) if (place := _find_origin(one, unit, along)) is not None]
+                if places:
+                    points, box = tuple((x, y) for x, y, _ in places), door_boxes.get(one.id())
+                    doors.append(ModelDoor(str(one.GlobalId), str(one.Name or ""), points, places[0][2], box))
         elements = []
         for key, one in found.items():
             box, owner = boxes.get(one.id()), one.OwnerHistory
@@ -144,15 +150,3 @@ def _find_origin(one: Any, unit: float, along: float = 0.0) -> Place | None:
     matrix = get_local_placement(one.ObjectPlacement)
     x, y, z = (float(matrix[axis][3]) * unit + along * float(matrix[axis][0]) for axis in range(3))
     return x, y, z
-
-
-def _list_doors(model: Any, unit: float) -> Iterator[ModelDoor]:
-    """Yield the doors: a door's origin is at one of its jambs, its opening lies along X."""
-    doors = model.by_type("IfcDoor")
-    boxes = _find_boxes(model, doors, unit)
-    for one in doors:
-        middle = float(one.OverallWidth or 0.0) * unit / 2
-        places = [place for along in (0.0, middle) if (place := _find_origin(one, unit, along)) is not None]
-        if places:
-            points = tuple((x, y) for x, y, _ in places)
-            yield ModelDoor(str(one.GlobalId), str(one.Name or ""), points, places[0][2], boxes.get(one.id()))

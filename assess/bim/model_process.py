@@ -32,7 +32,7 @@ PATIENCE = 4
 _ASKED_EVERY = 0.05
 PREFIX = "assess-model-"
 ORDER, ANSWER = "order", "answer"  # names of the files in which a process gets its work and leaves what came out
-OUT_OF_MEMORY, TOO_LONG = 3, 4  # status of a process whose memory ran out, and of one that the clock stopped
+OUT_OF_MEMORY = 3  # status with which the process ends when memory runs out
 
 _Found = TypeVar("_Found")
 _Given = ParamSpec("_Given")
@@ -47,10 +47,27 @@ def run_apart(
     with private_folder(PREFIX) as folder:
         order = (work.__module__, work.__qualname__, args, named, SECONDS, MEMORY)
         (folder / ORDER).write_bytes(pickle.dumps(order))
-        status, answer = _wait(str(folder), progress), folder / ANSWER
+        # in its own folder no file of the user's can take the place of a module
+        root = str(Path(__file__).parents[2])
+        paths = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
+        process = subprocess.Popen(  # noqa: S603 - our own module, in a folder that we named
+            [sys.executable, "-m", "assess.bim.model_process", str(folder)],
+            stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=folder,
+            env={**os.environ, "PYTHONPATH": paths, "PYTHONSAFEPATH": "1"},
+        )  # fmt: skip
+        status, end = None, time.monotonic() + PATIENCE * SECONDS
+        try:
+            while status is None and time.monotonic() <= end:
+                progress.check()
+                with suppress(subprocess.TimeoutExpired):
+                    status = process.wait(_ASKED_EVERY)
+        finally:
+            process.kill()
+            process.communicate()
+        answer = folder / ANSWER
         if not answer.exists():
             most = MEMORY // 2**30
-            if status in (TOO_LONG, -getattr(signal, "SIGXCPU", -TOO_LONG)):
+            if status in (None, -getattr(signal, "SIGXCPU", 99)):
                 raise ModelError(
                     fill("{name} takes more than {n} s of processor time to be read. Export fewer storeys, or "
                          "furniture, spaces, doors and walls only.", name=name, n=SECONDS)
@@ -69,28 +86,6 @@ def run_apart(
     if is_error:
         raise cast(AssessError, found)
     return cast(_Found, found)
-
-
-def _wait(folder: str, progress: Progress) -> int:
-    """Return the status with which the process of a folder ends, `TOO_LONG` where it is stopped by the clock."""
-    # in its own folder no file of the user's can take the place of a module
-    root = str(Path(__file__).parents[2])
-    paths = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
-    process = subprocess.Popen(  # noqa: S603 - our own module, in a folder that we named
-        [sys.executable, "-m", "assess.bim.model_process", folder],
-        stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=folder,
-        env={**os.environ, "PYTHONPATH": paths, "PYTHONSAFEPATH": "1"},
-    )  # fmt: skip
-    end = time.monotonic() + PATIENCE * SECONDS
-    try:
-        while time.monotonic() <= end:
-            progress.check()
-            with suppress(subprocess.TimeoutExpired):
-                return process.wait(_ASKED_EVERY)
-        return TOO_LONG
-    finally:
-        process.kill()
-        process.communicate()
 
 
 def main() -> None:
