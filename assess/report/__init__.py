@@ -6,7 +6,7 @@ PDF is the HTML with print CSS) and Word (`word`) render them; `xlsx` writes liv
 May import: `results`, `fields` and what stands below; of methods only how they describe themselves. Evaluates
 nothing.
 
-The reports in a folder are of one run. Every file is first written into a folder beside them, which then takes their
+The reports in a folder are of one run. Every file is first written into a temporary folder, which then takes their
 place (`assess.delivery`): a disk that fills, or a process that is killed, leaves the reports of the earlier run as they
 were. A run replaces and removes only what results.json lists (`assess.report.ownership`), so that it always writes one.
 """
@@ -42,18 +42,15 @@ def write_reports(
     """Write the reports of a run.
 
     * `results`: from `assess.run`.
-    * `folder`: where to; made where it is missing. Reports of an earlier run in it are replaced or removed, whatever
-      their format; other files are left alone.
+    * `folder`: where to; made where it is missing. Reports of an earlier run in it, of any format, are replaced
+      or removed; other files are left alone.
     * `formats`: of "pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz", "parquet"; by default all but "annex"
       and the last three; or "all". results.json is always written.
     * `options`: language, templates and kind of PDF; by default in the workbook's language, with the standard
       templates.
     * `progress`: notified of how far the work is; once it is cancelled, nothing is written.
 
-    Returns
-    -------
-    Written
-        The file of each format; `removed` are those of an earlier run that were not replaced.
+    Returns the file of each format; its `removed` are those of an earlier run that were not replaced.
 
     Raises InputError if a format is unknown, a template of the firm's own cannot be used, or a file of the user's
     stands at the name of a report; PdfUnavailableError if the native libraries of the PDFs are missing; all other

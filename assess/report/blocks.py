@@ -179,8 +179,8 @@ def part(words: Words, columns: int) -> Row:
 class Table:
     """A table; `groups` are its rows, those of one part together. `kind` holds its classes.
 
-    `is_named` tells that it shows names of the workbook, whose long words have places to break at; `is_cards` that
-    each row becomes a card on a phone, as suits rows that are read one by one.
+    `is_named`: it shows names of the workbook, whose long words have places to break at; `is_cards`: each row becomes
+    a card on a phone, for rows that are read one by one.
     """
 
     columns: Sequence[Column]

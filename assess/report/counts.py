@@ -19,8 +19,8 @@ class Counts:
 
     Classes never mix bases: `by_class` are the simulated pieces, or those by formula in a run that simulated nothing.
     `unconfirmed` and `by_formula` (not simulated in a run that simulated others) are counted apart. Of those with a
-    class, `may_be` could be of a higher one. `spans` tells of each class how many are of it whatever the sampling
-    intervals, and how many could be, `risky_span` of high and very high together. `expected` is the expected number of
+    class, `may_be` could be of a higher one. `spans` are, by class, how many belong to it over their whole sampling
+    intervals, and how many could, `risky_span` of high and very high together. `expected` is the expected number of
     them that fall, `falls_low` and `falls_high` what 5 and 95 % of the draws do not exceed, None without draws.
     """
 

@@ -10,8 +10,6 @@ from assess.report.embedded import data_uri
 FIGURE_FAMILY = "IBM Plex Sans"
 """The report's own face as its files call it."""
 REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
-
-
 EAST_ASIAN = (
     "Noto Sans CJK JP", "Noto Sans JP", "Noto Sans CJK SC", "Noto Sans SC", "Source Han Sans", "Hiragino Sans",
     "Yu Gothic", "PingFang SC", "Microsoft YaHei", "Malgun Gothic", "WenQuanYi Micro Hei",
@@ -68,16 +66,16 @@ def figure_families() -> tuple[str, ...]:
     for (family, _style), path in resources.fonts().items():
         if family == "Report" and str(path) not in listed:
             fontManager.addfont(path)
-    lent = [name for name in EAST_ASIAN if name in known]
-    return (FIGURE_FAMILY, "DejaVu Sans", *lent[:1])
+    borrowed = [name for name in EAST_ASIAN if name in known]
+    return (FIGURE_FAMILY, "DejaVu Sans", *borrowed[:1])
 
 
 def find_undrawn(text: str) -> str:
     """Return the characters of a text that no font of figures holds, each once, in their order."""
     from matplotlib.font_manager import findfont
 
-    lent = figure_families()[2:]
-    held = [font for family in lent if (font := _open_font(findfont(family))) is not None]
+    borrowed = figure_families()[2:]
+    held = [font for family in borrowed if (font := _open_font(findfont(family))) is not None]
     return "".join(sign for sign in find_missing(text) if not any(font.get_char_index(ord(sign)) for font in held))
 
 

@@ -3,7 +3,7 @@
 results.json names the reports of its run with their SHA-256, so that a file that was changed since, or put there by
 hand, is known to be the user's. It lists neither itself nor, by a hash, report.pdf and annex.pdf, which carry it. A
 file is a report only by its hash, or as a sealed PDF, and only names that this program writes are looked at: folders of
-reports travel, and a list may be anybody's.
+reports are passed on, and a list may come from anyone.
 
 A PDF is sealed by its file identifier (ISO 32000-1, 14.4: two strings in the trailer, the first one permanent, the
 second one anew with each change): the first is made of results.json, the second of all other bytes of the file. Both

@@ -63,11 +63,10 @@ def check_templates(options: ReportOptions) -> None:
 def _describe(error: Exception, options: ReportOptions) -> str:
     """Return where in the templates something is wrong, and what."""
     name, line = getattr(error, "name", None), getattr(error, "lineno", None)
-    if line is None:  # one that came up while rendering has its place in the traceback alone
-        frames = [one for one in traceback.extract_tb(error.__traceback__) if one.filename.endswith(".j2")]
-        if frames:
-            path, line = Path(frames[-1].filename), frames[-1].lineno
-            name = next(path.relative_to(one).as_posix() for one in options.folders if path.is_relative_to(one))
+    frames = [one for one in traceback.extract_tb(error.__traceback__) if one.filename.endswith(".j2")]
+    if line is None and frames:  # one that came up while rendering has its place in the traceback alone
+        path, line = Path(frames[-1].filename), frames[-1].lineno
+        name = next(path.relative_to(one).as_posix() for one in options.folders if path.is_relative_to(one))
     place = f"{name or 'a template'}{f', line {line}' if line else ''}"
     return f"templates: {place}: {error}"
 
@@ -78,13 +77,9 @@ def _environment(own: Path | None, folders: tuple[Path, ...]) -> Any:
     from jinja2.sandbox import ImmutableSandboxedEnvironment
 
     environment = (Environment if own is None else ImmutableSandboxedEnvironment)(
-        loader=FileSystemLoader(folders),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        optimized=False,  # what is compiled holds no text, so that all languages share it
-    )
+        loader=FileSystemLoader(folders), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+        lstrip_blocks=True, optimized=False,  # what is compiled holds no text, so that all languages share it
+    )  # fmt: skip
     environment.globals |= {"_": markup, "ngettext": nmarkup}
     environment.filters |= {"cut": words.cut, "in_m": words.in_m, "breakable": break_words}
     return environment

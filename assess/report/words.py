@@ -287,7 +287,7 @@ def say_scanned(one: ItemResult) -> str:
 def say_bracket(one: ItemResult) -> str:
     """Return what follows from a bracket whose capacity is known: whether the piece counts as anchored; "" else.
 
-    Of one that holds by the criterion of its piece, PFA or its 84 %, it is said where it fails by a stricter one.
+    For one that holds by the criterion of its piece, PFA or its 84 %, it states where it fails by a stricter one.
     """
     anchored, anchor = one.item.anchored, one.item.anchor
     if anchored not in ("yes", "partly") or anchor.bracket_capacity_kn is None:

@@ -47,11 +47,11 @@ def draw_bars(counts: Sequence[Counts], title: str, most: int = MOST) -> tuple[I
             x += width
         bars.append(f'<text x="{x + 4:.1f}" {below} fill="#1c1c1c">{number(one.total, ",d")}</text>')
     lines = "\n".join(bars)
-    said = escape(title)
+    heading = escape(title)
     drawn = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" class="bars" role="img" aria-label="{said}" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="bars" role="img" aria-label="{heading}" '
         f'viewBox="0 0 {LABEL + WIDTH:.0f} {len(shown) * ROW + 4:.0f}" '
         'font-family="Report, Report Signs, DejaVu Sans, sans-serif" font-size="8.5">'
-        f"<title>{said}</title>\n{lines}\n</svg>"
+        f"<title>{heading}</title>\n{lines}\n</svg>"
     )
     return Image(drawn), len(there) - len(shown)

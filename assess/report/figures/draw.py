@@ -43,7 +43,7 @@ def draw(
     """Draw one figure [inches] and return it as "svg", "pdf" or "png".
 
     Numbers along the axes are written as the language in use writes them; a character without a glyph shows as �.
-    It can be cancelled with whatever is put into it, and before each panel is laid out and drawn. It is not made in a
+    It can be cancelled with each object put into it, and before each panel is laid out and drawn. It is not made in a
     thread that is left behind, as the defaults of matplotlib have to be set back by then.
     """
     for name in ("font_manager", "backends.backend_svg", "figure"):  # its fonts are listed, what writes SVG is loaded
@@ -52,7 +52,7 @@ def draw(
 
     with one_at_a_time(progress), mpl.rc_context({**_STYLE, "font.family": list(figure_families())}):
         figure = mpl.figure.Figure(figsize=(width, height), layout="constrained")
-        figure.stale_callback = lambda *_: progress.check()  # called with whatever is put into it
+        figure.stale_callback = lambda *_: progress.check()  # called with each object put into it
         paint(figure)
         for one in figure.findobj(mpl.text.Text):
             if missing := find_undrawn(one.get_text()):
@@ -70,7 +70,7 @@ def draw(
         figure.savefig(file, format=kind, dpi=150, metadata=dict.fromkeys(_UNDATED[kind]))
     progress.check()
     drawn = file.getvalue()
-    if kind == "svg":  # paths to hundredths of a point, beyond which nobody sees: curves take half the bytes
+    if kind == "svg":  # paths to hundredths of a point: curves take half the bytes
         drawn = _PATH.sub(lambda path: _DIGITS.sub(rb"\1", path[0]), drawn)
     return drawn
 

@@ -71,7 +71,7 @@ def draw_motion(values: FloatArray, time_step_s: float, progress: Progress = SIL
 class Traced:
     """A piece whose motions are drawn; `alike` are the other rows of its size under the same floor motion.
 
-    `fell` (n,) tells under which of its n motions it overturned, `rotation` (n,) how far it turned, as a ratio to the
+    `fell` (n,) is whether it overturned under each of its n motions, `rotation` (n,) how far it turned, over the
     critical angle.
     """
 
@@ -253,10 +253,7 @@ Acceleration = tuple[str, str, FloatArray, float]
 
 
 def _paint_motions(accelerations: Sequence[Acceleration], series: Series, motion: str, figure: Any) -> None:
-    """Paint accelerations, and next to them the spectra that the series hold of a motion, if one is named.
-
-    They are thin curves, the band from their 16th to 84th percentile, their mean, and the target.
-    """
+    """Paint accelerations, and next to them the spectra of a motion, if one is named, their band, mean and target."""
     left = figure
     if motion:
         left, right = figure.subfigures(1, 2, width_ratios=(1.2, 1))

@@ -41,7 +41,7 @@ class Stretch:
     """A segment as it is drawn; `number` is that of its row among all segments, from 1.
 
     `sign` is where its sign stands: None where there is no room and nothing to warn of; `marks` stand next to it.
-    `is_draft` tells that its route is drafted from a building model and not walked.
+    `is_draft`: its route was drafted from a building model and not walked.
     """
 
     number: int
@@ -60,7 +60,7 @@ def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
     """Return by floor the segments whose places both have a position on it, those with most to warn of last."""
     white, dark, opened, blocked = "#ffffff", "#1c1c1c", RouteState.OPEN, RouteState.BLOCKED
     doubtful, unknown, standing = RouteState.DOUBTFUL, RouteState.NOT_KNOWN, _("blocked as it stands")
-    styles = (  # the best first; none is told by colour alone
+    styles = (  # the best first; none differs by colour alone
         Style("open", _("open"), opened.symbol, opened.fill, white, dark, "", 0.8),
         Style("doubtful", _("doubtful"), doubtful.symbol, doubtful.fill, white, dark, "8 3", 1.2),
         Style("unknown", _("not known"), unknown.symbol, unknown.fill, white, dark, "8 3 2 3", 1.6),
@@ -75,16 +75,16 @@ def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
         state = "unknown" if one.state == RouteState.NOT_KNOWN else str(one.state)
         start, end = (one.start_x_m or 0.0, one.start_y_m or 0.0), (one.end_x_m or 0.0, one.end_y_m or 0.0)
         along = (-one.extends_start_m, one.length_m + one.extends_end_m)  # as far as it goes on round a bend
-        said = _("{segment}: {state}; chance of blockage {chance}",
-                 segment=say_segment(one), state=say_outlook(one, routes.risk), chance=say_blocked(one))  # fmt: skip
+        title = _("{segment}: {state}; chance of blockage {chance}",
+                  segment=say_segment(one), state=say_outlook(one, routes.risk), chance=say_blocked(one))  # fmt: skip
         piece = one.most_likely_piece
         if one.missing:
-            said = f"{said}; {say_missing(one.missing)}"
+            title = f"{title}; {say_missing(one.missing)}"
         elif one.state != RouteState.OPEN and piece is not None and not one.is_blocked_standing:
-            said = _("{segment}; most likely by {item}", segment=said, item=words.cut(piece.item, 40))
+            title = _("{segment}; most likely by {item}", segment=title, item=words.cut(piece.item, 40))
         angle = math.degrees(math.atan2(end[1] - start[1], end[0] - start[0]))
         found.setdefault(one.floor, []).append(Stretch(
-            number=number, name=words.cut(one.segment, NAMED), title=said,
+            number=number, name=words.cut(one.segment, NAMED), title=title,
             style=styles[order.index("standing" if one.is_blocked_standing else state)], start=start, end=end,
             corners=rectangle(start, angle, along, one.clear_width_used_m),
             marks=words.ANCHORED if is_held(one, routes.risk) else "",  # anchors alone keep it from being worse

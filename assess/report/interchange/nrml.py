@@ -49,7 +49,7 @@ def write_nrml(assessment: Assessment, found: PieceFragilities) -> files.Exchang
 
     The scenario of `assessment` gives the PGA of the ground; `found` is of it and against PFA, by
     `assess.pipeline.piece_fragility.find_piece_fragilities`. Raises InputError if the measure is PFV, the ground PGA is
-    not known, or there is no curve to be written.
+    unknown, or no curve can be written.
     """
     pga = find_ground_pga(assessment, found.im)
     kept, left = files.choose_curves("OpenQuake", found.curves, _judge)
@@ -76,10 +76,7 @@ def write_nrml(assessment: Assessment, found: PieceFragilities) -> files.Exchang
 
 
 def find_ground_pga(assessment: Assessment, im: str) -> float:
-    """Return the ground PGA to which the motions of the floors belong [m/s2].
-
-    Raises InputError if it is not known, or the measure is not "pfa": then no curve can be written, whatever it is.
-    """
+    """Return the ground PGA that goes with the motions of the floors [m/s2]; InputError if unknown, or `im` is PFV."""
     if im != "pfa":
         raise InputError.about(
             "formats: OpenQuake computes accelerations of the ground, which a PFV cannot be derived from: nrml is "

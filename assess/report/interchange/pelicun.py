@@ -48,8 +48,8 @@ USE = (
 def write_pelicun(assessment: Assessment, found: PieceFragilities) -> files.Exchange:
     """Write the lognormals as a damage database, NAME-pelicun.csv and NAME-pelicun.json; pelicun takes nothing else.
 
-    `found` is of `assessment`, by `assess.pipeline.piece_fragility.find_piece_fragilities`. Raises InputError if there
-    is no curve to be written.
+    `found` is of `assessment`, by `assess.pipeline.piece_fragility.find_piece_fragilities`. Raises InputError if no
+    curve can be written.
     """
     rough = fill(
         "no lognormal stands in for its table: the misfit exceeds {most:g}. More draws lessen the part of it that is "

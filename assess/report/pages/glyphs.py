@@ -74,8 +74,9 @@ def describe(missing: Sequence[Missing], nowhere: Collection[str]) -> list[Probl
     listed = []
     for one in missing:
         lost = [sign for sign in one.characters if sign in nowhere]
-        lent = [sign for sign in one.characters if unicodedata.category(sign) not in _BLANKS and sign not in _VARIANTS]
-        signs = lost or lent
+        seen = [sign for sign in one.characters if unicodedata.category(sign) not in _BLANKS]
+        borrowed = [sign for sign in seen if sign not in _VARIANTS]
+        signs = lost or borrowed
         named = ", ".join(f"{sign} (U+{ord(sign):04X})" for sign in signs[:MOST_NAMED])  # they may show as boxes here
         more = len(signs) - MOST_NAMED
         values = {
@@ -90,7 +91,7 @@ def describe(missing: Sequence[Missing], nowhere: Collection[str]) -> list[Probl
             )  # fmt: skip
             fix = fill("Install a font that does, such as Noto (Debian: apt install fonts-noto-core fonts-noto-cjk).")
             listed.append(Problem("warning", one.sheet, one.cell, message, fix))
-        elif lent:
+        elif borrowed:
             message = nfill(
                 "{label}: a font of this machine lends the PDF {characters}; figures may have boxes instead.",
                 "{label} of {n} rows: a font of this machine lends the PDF {characters}; figures may have boxes "

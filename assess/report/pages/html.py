@@ -27,7 +27,6 @@ from assess.report.words import apart_label, class_name, risk_label
 from assess.risk import RiskClass
 from assess.version import __version__
 
-SCRIPT = "script/report.js"
 _HIDDEN = 'width="0" height="0" aria-hidden="true" style="position: absolute"'
 
 
@@ -95,8 +94,8 @@ def render(
     filters += [("apart-unconfirmed", apart_label("unconfirmed"))] if total.unconfirmed else []
     filters += [("apart-formula", apart_label("formula"))] if total.by_formula else []
     filters += [("anchored", _("anchored"))]
-    filters = filters if content.results else []
-    return render_document(document, options, script=options.read(SCRIPT), filters=filters, progress=progress)
+    filters, script = filters if content.results else [], options.read("script/report.js")
+    return render_document(document, options, script=script, filters=filters, progress=progress)
 
 
 def render_document(

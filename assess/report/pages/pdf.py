@@ -16,7 +16,7 @@ from assess.delivery.folders import private_folder
 from assess.errors import AssessError, PdfUnavailableError, Problem
 from assess.i18n import fill
 from assess.i18n import gettext as _
-from assess.progress import SILENT, Progress
+from assess.progress import ASKED_EVERY, SILENT, Progress
 from assess.report.content import Content
 from assess.report.fonts import find_missing, find_nowhere, print_fonts, replace_signs
 from assess.report.ownership import DATA
@@ -29,14 +29,11 @@ from assess.report.view import Edition
 from assess.results import Results
 
 DEBIAN = "apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
-ARCHIVAL, ACCESSIBLE = "pdf/a-3u", "pdf/ua-1"
 _KINDS = {
     ".xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
     ".xlsm": "application/vnd.ms-excel.sheet.macroenabled.12",
     ".json": "application/json",
 }
-_CHECKED_EVERY = 0.1
-"""Time [s] after which it is looked whether the work was cancelled."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,10 +145,9 @@ class Layout:
         moment: datetime | None = None,
     ) -> str:
         """Have the PDF written, without `options` a plain one; return what was printed. Raises as `finish_pdf` does."""
-        variant = options and (ACCESSIBLE if options.accessible else ARCHIVAL)
         job = {
             "path": str(path),
-            "variant": variant,
+            "variant": options and ("pdf/ua-1" if options.accessible else "pdf/a-3u"),
             "time": (moment or report_time()).isoformat(),
             "attachments": [asdict(file) for file in files],
         }
@@ -162,7 +158,7 @@ class Layout:
             while True:
                 progress.check()
                 with contextlib.suppress(subprocess.TimeoutExpired):
-                    self.process.wait(_CHECKED_EVERY)
+                    self.process.wait(ASKED_EVERY)
                     break
         for file in (self.printed, self.errors):
             file.seek(0)

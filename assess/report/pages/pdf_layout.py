@@ -2,7 +2,7 @@
 
 It reads two lines from standard input: the page as JSON, which it lays out at once, and the file with what is known
 only later: where to write to, and what to attach. WeasyPrint cannot be interrupted, and it prints and warns as it is
-loaded; a process can be ended, and its output belongs to nobody else. This module imports nothing of `assess`, so that
+loaded; a process can be ended, and its output is kept apart. This module imports nothing of `assess`, so that
 it starts at once.
 """
 
@@ -39,7 +39,7 @@ def main() -> None:
     document = open_page(page["html"], page["fonts"]).render()
     rest = sys.stdin.buffer.readline().decode().strip()
     if not rest:
-        return  # nobody waits for it any more
+        return  # the caller has ended
     try:
         job = json.loads(Path(rest).read_text(encoding="utf-8"))
         moment = datetime.datetime.fromisoformat(job["time"])

@@ -53,8 +53,8 @@ def measure(image: Image) -> Drawing:
         scale = min(WIDEST / width, TALLEST / height)
         width, height = scale * width, scale * height
     title = root.find("{*}title")
-    said = image.alternative or root.get("aria-label") or (title.text if title is not None else "") or ""
-    return Drawing(svg, max(width, LEAST), max(height, LEAST), said)
+    words = image.alternative or root.get("aria-label") or (title.text if title is not None else "") or ""
+    return Drawing(svg, max(width, LEAST), max(height, LEAST), words)
 
 
 def _declare(svg: str) -> str:

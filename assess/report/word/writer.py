@@ -49,8 +49,7 @@ _STYLES = {
     "Small": ("Normal", 9, QUIET, None, 4), "Cell": ("Normal", 9, TEXT, None, 0),
     "Cell Head": ("Cell", 9, HEAD, True, 0), "Listing": ("Normal", 7.5, TEXT, None, 0),
 }  # fmt: skip
-"""Styles: the one that each is based on ("" of those that Word has), size [pt], colour, whether bold, space after [pt].
-"""
+"""Styles: what each is based on ("" of those that Word has), size [pt], colour, whether bold, space after [pt]."""
 _OF_KINDS = {"lead": "Lead", "caution": "Caution", "small": "Small", "legend": "Small", "note": "Small",
              "kind": "Subtitle", "scenario": "Subtitle"}  # fmt: skip
 """Styles of paragraphs by their kind; the others are plain."""
