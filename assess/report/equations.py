@@ -140,7 +140,6 @@ def _ends_stretch(tokens: list[Token], at: int, depth: int) -> bool:
 # ---------------------------------------------------------------- from tokens to TeX
 
 _CLOSING = {"(": ")", "[": "]"}
-_OPENING = tuple(_CLOSING)
 _STARTS = ("number", "name", "half", "root", "open", "function")
 
 
@@ -242,10 +241,10 @@ class _Parser:
                 name = self.take("function")
                 word = rf"\mathrm{{{name}}}" if name in ("asin", "acos", "atan", "sgn") else rf"\{name}"
                 word += self.power()
-                return word + (self.bracket(deeper=0) if self.text in _OPENING else r"\, " + self.factor())
+                return word + (self.bracket(deeper=0) if self.text in _CLOSING else r"\, " + self.factor())
             case "root":
                 self.at += 1
-                inside = _bare(self.bracket(deeper=0)) if self.text in _OPENING else self.factor()
+                inside = _bare(self.bracket(deeper=0)) if self.text in _CLOSING else self.factor()
                 return rf"\sqrt{{{inside}}}"
             case "bar":
                 self.at += 1
