@@ -200,6 +200,27 @@ def test_no_method_is_named_outside_its_own_file():
     assert found == []
 
 
+def test_studies_stand_alone():
+    """Nothing but the command line imports them, and no study imports another."""
+    studies = {
+        _name(path) for path in MODULES if re.search(r"^STUDY = ", path.read_text(encoding="utf-8"), re.MULTILINE)
+    }
+    assert len(studies) > 5
+    found = []
+    for path in MODULES:
+        module = _name(path)
+        if not module.startswith("assess.studies"):
+            allowed = {"assess.studies"} if module.startswith("assess.cli") else set()
+            found += [
+                f"{module} imports {one}"
+                for one in _imports(path)
+                if one.startswith("assess.studies") and one not in allowed
+            ]
+        else:
+            found += [f"{module} imports {one}" for one in _imports(path) & studies if not module.startswith(one)]
+    assert found == []
+
+
 def test_only_the_command_line_names_options():
     """The options of pipx, in the line that says how to install an extra, are not ours."""
     paths = [

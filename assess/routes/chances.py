@@ -283,11 +283,3 @@ def find_chances(couplings: Couplings, happens: Happens, z: float) -> list[Chanc
         )  # fmt: skip
         found.append(chance)
     return found
-
-
-def find_upper(couplings: Couplings, chance: float, left: Collection[int], z: float) -> float:
-    """Return the upper end of the interval of a chance [-] that rests on some of the pieces, by their index."""
-    counts = [couplings.sizes[item] for item in left if item in couplings.sizes]
-    counts += [DRAWS] if couplings.is_drawn else []
-    runs = min(counts, default=0)
-    return max(chance, float(wilson_interval(chance * runs, runs, z)[1])) if runs else chance

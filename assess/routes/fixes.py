@@ -7,7 +7,8 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import pairwise
 
 from assess.progress import SILENT, Progress
-from assess.routes.chances import EVERY, NONE, Couplings, Draws, Key, find_upper
+from assess.risk import wilson_interval
+from assess.routes.chances import DRAWS, EVERY, NONE, Couplings, Draws, Key
 from assess.routes.network import IsBlocked
 from assess.routes.obstructions import Obstructions
 
@@ -35,7 +36,7 @@ def find_fixes(
 
     every = {id(draws): sample(draws) for draws in (*couplings.decisive, couplings.independent)}
     decisive, independent = [every[id(draws)] for draws in couplings.decisive], every[id(couplings.independent)]
-    ends, items = sample(couplings.ends), frozenset(item for item, _ in couplings.keys)
+    ends = sample(couplings.ends)
 
     def chance(fixed: Collection[int]) -> float:
         """Return the chance that the route is blocked [-]."""
@@ -43,10 +44,12 @@ def find_fixes(
 
     def upper(fixed: Collection[int]) -> float:
         """Return the upper end of its interval [-]; what is certain has none."""
-        end = ends.happened(Fixed(fixed))
-        if end & NONE or not end & EVERY:
-            return chance(fixed)
-        return find_upper(couplings, chance(fixed), items - Fixed(fixed), z)
+        value, end = chance(fixed), ends.happened(Fixed(fixed))
+        counts = [runs for item, runs in couplings.sizes.items() if item not in fixed]
+        runs = min([*counts, *([DRAWS] if couplings.is_drawn else [])], default=0)  # of the pieces that are left
+        if end & NONE or not end & EVERY or not runs:
+            return value
+        return max(value, float(wilson_interval(value * runs, runs, z)[1]))
 
     def involved(fixed: Collection[int]) -> list[int]:
         own = Fixed(fixed)

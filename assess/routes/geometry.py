@@ -8,7 +8,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from assess.model import Inventory, Item
 from assess.progress import SILENT, Progress
@@ -123,24 +122,15 @@ class Band:
 
         return box(-self.extends_start, -self.width / 2, self.length + self.extends_end, self.width / 2)
 
-    def ground(self) -> "BaseGeometry":
-        """Return an area of the plan that contains the band."""
-        from shapely import LineString
-
-        beyond = self.width / 2 + max(self.extends_start, self.extends_end)
-        return LineString([self.start, self.end]).buffer(beyond, cap_style="square")
-
     def to_own(self, shape: "BaseGeometry") -> "BaseGeometry":
         """Return a shape of the plan in the band's own coordinates."""
         import shapely
 
         along = (np.array(self.end) - self.start) / self.length
-
-        def local(points: NDArray[np.float64]) -> NDArray[np.float64]:
-            away = points - self.start
-            return np.column_stack((away @ along, away @ (-along[1], along[0])))
-
-        return shapely.transform(shape, local)
+        across = (-along[1], along[0])
+        return shapely.transform(
+            shape, lambda points: np.column_stack([(points - self.start) @ one for one in (along, across)])
+        )
 
 
 def build_bands(inventory: Inventory, clear: Sequence[float]) -> dict[int, Band]:

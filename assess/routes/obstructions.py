@@ -237,14 +237,9 @@ class Obstructions:
         return self.standing < self.required - NARROWER
 
     @property
-    def is_stair(self) -> bool:
-        """Whether it joins two places and lies on no floor: no piece can fall there but those that name it."""
-        return is_stair(self.segment)
-
-    @property
     def is_evaluated(self) -> bool:
         """Whether it is known which pieces can reach it; where it is too narrow as it stands, none need."""
-        is_wide = self.is_stair and self.segment.clear_width is not None
+        is_wide = is_stair(self.segment) and self.segment.clear_width is not None
         return bool(self.pieces) or self.band is not None or self.is_blocked_standing or is_wide
 
     @property
@@ -326,7 +321,7 @@ def is_walled_off(item: Item, segment: Segment) -> bool:
 
 
 def is_stair(segment: Segment) -> bool:
-    """Tell whether a segment joins two places and lies on no floor."""
+    """Tell whether a segment joins two places and lies on no floor: no piece can fall there but those that name it."""
     return not segment.floor and bool(segment.start and segment.end)
 
 
@@ -357,7 +352,7 @@ def _find_named(inventory: Inventory) -> dict[int, list[int]]:
 def _find_near(inventory: Inventory, shapes: Mapping[int, Shape], bands: Mapping[int, Band]) -> dict[int, list[int]]:
     if not shapes:
         return {}
-    from shapely import STRtree
+    from shapely import LineString, STRtree
 
     on_floor: dict[str, list[int]] = {}
     for index in shapes:
@@ -366,7 +361,9 @@ def _find_near(inventory: Inventory, shapes: Mapping[int, Shape], bands: Mapping
     found = {}
     for at, band in bands.items():
         floor = inventory.routes[at].floor
-        hits = trees[floor].query(band.ground()) if floor in trees else ()
+        beyond = band.width / 2 + max(band.extends_start, band.extends_end)
+        area = LineString([band.start, band.end]).buffer(beyond, cap_style="square")  # it contains the band
+        hits = trees[floor].query(area) if floor in trees else ()
         found[at] = [on_floor[floor][hit] for hit in sorted(hits)]
     return found
 

@@ -21,7 +21,7 @@ from assess.risk import wilson_interval
 from assess.route_results import DOUBTS, Chance, MissingRow, PieceRef, RouteState, find_state, join_missing
 from assess.routes.chances import Couplings, Draws, Falls, Happens, Key, build_couplings, find_chances, union
 from assess.routes.network import Blocked, IsBlocked, build_course
-from assess.routes.obstructions import Obstructions, is_walled_off
+from assess.routes.obstructions import Obstructions, is_stair, is_walled_off
 from assess.routes.widths import kinds_of
 from assess.settings import Settings
 
@@ -155,9 +155,9 @@ class Scene:
         one, items = self.obstructions[at], self.inventory.items
         segment = one.segment
         own = [(f"{segment.route}: {segment.segment}", segment.row)]
-        if one.is_blocked_standing or (one.is_stair and not self.is_unknown(at)):
+        if one.is_blocked_standing or (is_stair(one.segment) and not self.is_unknown(at)):
             return ()
-        if one.is_stair:
+        if is_stair(one.segment):
             pieces = [(near.item, near.row) for near in one.pieces]
             width = self._row("clear_width", own, "Routes", "clear_width")
             return width, *([self._row("stair_pieces", pieces, "Items", "route")] if pieces else [])
@@ -236,7 +236,7 @@ class Scene:
         one, items = self.obstructions[segment], self.inventory.items
         if one.is_blocked_standing:
             return False
-        if one.is_stair:
+        if is_stair(one.segment):
             return one.segment.clear_width is None
         if not items or one.band is not None:
             return not items
@@ -247,7 +247,7 @@ class Scene:
         """Tell whether it is known which pieces can reach a segment, or those left out hardly fall, all together."""
         one = self.obstructions[segment]
         if one.is_evaluated:
-            return bool(self.inventory.items) or one.is_stair or one.is_blocked_standing
+            return bool(self.inventory.items) or is_stair(one.segment) or one.is_blocked_standing
         return not self.is_unknown(segment) and self.any_left_out_falls([segment])[1] < self.risk
 
     def piece(self, item: int) -> PieceRef:

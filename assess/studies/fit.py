@@ -12,7 +12,7 @@ fitted to counts, fallen of runs, by maximum likelihood of independent binomials
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -379,39 +379,25 @@ class Alternative:
     left_out: LeftOut
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Fits:
     """The data, the surfaces ranked, and the probits.
 
     * `points`, `counts`: the n cases: every block at every common PFA under every channel.
+    * `best`, `equation_8`, `constant`: the surface of the smallest error, however many coefficients it has, the paper's
+      choice and the trivial model, each fitted.
     * `published`: errors of the formulas as published, by title.
     """
 
     points: Points
     counts: Counts
     ranked: tuple[Ranked, ...]
+    best: Ranked
+    equation_8: Ranked
+    constant: Ranked
     probit: Alternative
     probit_without_pfv: Alternative
     published: Mapping[str, LeftOut]
-
-    def find(self, candidate: Candidate) -> Ranked:
-        """Return a surface by its candidate."""
-        return next(one for one in self.ranked if one.surface.candidate == candidate)
-
-    @cached_property
-    def best(self) -> Ranked:
-        """The surface of the smallest error, however many coefficients it has."""
-        return min(self.ranked, key=lambda one: one.surface.left_out.error)
-
-    @cached_property
-    def equation_8(self) -> Ranked:
-        """The paper's choice, fitted again."""
-        return self.find(EQUATION_8)
-
-    @cached_property
-    def constant(self) -> Ranked:
-        """The trivial model, fitted."""
-        return self.find(CONSTANT)
 
     @property
     def buildings(self) -> list[str]:
@@ -437,14 +423,15 @@ def fit_all(compared: Sequence[Compared], options: Options) -> Fits:
     )  # fmt: skip
     group = np.repeat([one.building.name for one in compared], sizes)
     points = Points(counts.breadth / counts.height, counts.pfa / ACCELERATION["cm/s2"], counts.risk, group)
+    ranked = rank_surfaces(points, (one for one, _ in surfaces.each(CANDIDATES)))
+    of = {one.surface.candidate: one for one in ranked}
     return Fits(
-        points=points,
-        counts=counts,
-        ranked=rank_surfaces(points, (one for one, _ in surfaces.each(CANDIDATES))),
+        points=points, counts=counts, ranked=ranked, best=min(ranked, key=lambda one: one.surface.left_out.error),
+        equation_8=of[EQUATION_8], constant=of[CONSTANT],
         probit=fit_alternative(counts, group, with_pfv=True, check=check),
         probit_without_pfv=fit_alternative(counts, group, with_pfv=False, check=check),
         published={title: find_errors(pool(compared, key)[0], points) for key, title in FORMULAS.items()},
-    )
+    )  # fmt: skip
 
 
 def fit_alternative(
@@ -546,6 +533,7 @@ def collect(fits: Fits) -> dict[str, object]:
     named = {CONSTANT: "", EQUATION_8: " (eq. 8)", best.candidate: " (smallest error)"}
     start = GRAVITY * fits.counts.breadth / fits.counts.height
     at_rest = fits.probit.probit.evaluate(fits.counts.cases)[fits.counts.pfa < start * (1 - ROUNDING)]
+    of = {one.surface.candidate: one for one in fits.ranked}
     again = {CONSTANT: "", EQUATION_8: " (equation (8) fitted again)", best.candidate: " (smallest error)"}
     coefficients: list[dict[str, object]] = []
     for name, letter in (("b0", "b₀"), ("b1", "b₁"), ("b2", "b₂")):
@@ -569,7 +557,7 @@ def collect(fits: Fits) -> dict[str, object]:
         "models": [
             *((f"{title} (not fitted)", 0, left_out) for title, left_out in fits.published.items()),
             *(
-                (f"{one.name}{name}", len(one.powers), fits.find(one).surface.left_out)
+                (f"{one.name}{name}", len(one.powers), of[one].surface.left_out)
                 for one, name in again.items()
             ),
             ("probit without PFV (b₀, b₁)", 2, fits.probit_without_pfv.left_out),

@@ -105,7 +105,7 @@ class Judgement:
 
     `medians` (b,) are the PFA at which its chance is one half [g]; `chances` (b, 3) those at the least, mean and
     largest measured PGA [-]; `rank_correlation` is Spearman's, of medians and measured means [-]; `bias` and
-    `scatter` are mean and standard deviation of ln(median/measured mean) [-].
+    `scatter` are mean and standard deviation of ln(median/measured mean) [-], `share` is its geometric mean [-].
     """
 
     medians: FloatArray
@@ -113,11 +113,7 @@ class Judgement:
     rank_correlation: float
     bias: float
     scatter: float
-
-    @property
-    def share(self) -> float:
-        """Geometric mean of median/measured mean [-]."""
-        return math.exp(self.bias)
+    share: float
 
 
 def judge_methods(blocks: Sequence[Block], options: Options) -> dict[str, Judgement]:
@@ -127,9 +123,9 @@ def judge_methods(blocks: Sequence[Block], options: Options) -> dict[str, Judgem
     for name, chance in build_chances(options).items():
         medians = np.array([find_median(chance, one.ratio) for one in blocks])
         chances = [chance(np.full(3, one.ratio), np.array([one.pga[case] for case in CASES])) for one in blocks]
-        off = np.log(medians / means)
-        ranks = correlate_ranks(medians, means)
-        found[name] = Judgement(medians, np.array(chances), ranks, float(off.mean()), float(off.std()))
+        off, ranks = np.log(medians / means), correlate_ranks(medians, means)
+        bias, scatter = float(off.mean()), float(off.std())
+        found[name] = Judgement(medians, np.array(chances), ranks, bias, scatter, math.exp(bias))
     return found
 
 
