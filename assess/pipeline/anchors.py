@@ -221,14 +221,8 @@ def _list_numbers(values: Sequence[float | None]) -> FloatArray:
     return np.array(values, dtype=np.float64)
 
 
-# ---------------------------------------------------------------- what if some pieces were anchored
-
-
 def spell_names(inventory: Inventory, names: Sequence[str]) -> tuple[str, ...]:
-    """Return the names of items as the workbook spells them, each once.
-
-    Raises SettingsError if there is no item of a name, or a name is meant as ``first:N`` and is not.
-    """
+    """Return names of items as the workbook spells them, each once; SettingsError for an unknown or malformed one."""
     known = {key(one.item): one.item for one in inventory.items} if names else {}
     for name in (one for one in names if key(one) not in known):
         if re.match(r"\s*first\s*(:|$)", name, re.IGNORECASE):

@@ -237,8 +237,7 @@ def build_falls(
     found = outcomes[simulation().key]
     fell = list_verdicts(found, adoption, settings, (SIMULATED, CANNOT_ROCK))
     return Falls(
-        probability=adoption.probability[governing],
-        high=np.fmax(adoption.probability, adoption.high)[governing],
+        probability=adoption.probability[governing], high=np.fmax(adoption.probability, adoption.high)[governing],
         fell={at: fell[case] for at, case in enumerate(governing.tolist()) if case in fell} | dict(either_axis),
         unconfirmed={
             at: tuple(name for flag, name in DOUBTS.items() if found.flags[flag][case])

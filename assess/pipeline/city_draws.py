@@ -7,7 +7,6 @@ from assess.i18n import fill, join
 from assess.model import Inventory
 from assess.motion.spatial_field import SCATTERS, Measure
 from assess.pipeline.known_ground import find_ground
-from assess.results import EarthquakeDraws
 from assess.rocking.draws import Earthquakes, name_number
 from assess.settings import AUTO, RUNS, Settings
 
@@ -52,19 +51,6 @@ def number_building(inventory: Inventory, settings: Settings) -> int:
     return 0 if place is None else name_number(f"{place[0]:.6f} {place[1]:.6f} {name}")
 
 
-def describe_draws(inventory: Inventory, settings: Settings, earthquakes: Earthquakes) -> EarthquakeDraws | None:
-    """Return how draws depend on the place and on scenarios; None where they do not."""
-    if not settings.city and not earthquakes.given:
-        return None
-    ground = inventory.site_ground
-    return EarthquakeDraws(
-        is_city=settings.city, is_placed=earthquakes.place is not None, shared=earthquakes.shared,
-        is_shared_given=ground is not None and ground.shared is not None, measure=earthquakes.measure,
-        range_km=SCATTERS[earthquakes.measure].range_km, scenarios=len(earthquakes.given),
-        scenario_share=earthquakes.given_share,
-    )  # fmt: skip
-
-
 def choose_runs(scenarios: int, runs: int | str | None = None) -> int | str:
     """Return the number of draws for a number of scenarios, 0 for none; `runs` is what was asked for.
 
@@ -80,9 +66,8 @@ def choose_runs(scenarios: int, runs: int | str | None = None) -> int | str:
     if chosen == AUTO or int(chosen) % scenarios:
         fault = fill(
             "runs is {runs}, expected a multiple of {scenarios:,}, the number of scenarios: each has to count alike.",
-            runs=chosen,
-            scenarios=scenarios,
-        )
+            runs=chosen, scenarios=scenarios,
+        )  # fmt: skip
         fix = fill("Leave runs out, or set it to {runs}.", runs=choose_runs(scenarios))
         raise InputError(join(" ", (fault, fix)))
     return chosen

@@ -73,8 +73,7 @@ class Demand:
     * `drawn`: how its draws are made where it has no record.
     * `profile`: the code's profile, with its clause.
     * `height_ratio`, `amplification`: z/h [-], and PFA over the ground's PGA where PFA follows from it [-].
-    * `shaking`: the assumed intensity of the ground motion.
-    * `site`: the ShakeMap or the scenarios that give it.
+    * `shaking`, `site`: the assumed intensity, the ShakeMap or the scenarios that give the ground motion.
     * `own_dispersion`, `dispersion`: standard deviation of ln amplitude from one earthquake to the next [-]: at a known
       ground motion, and with the scatter of what gives the ground motion.
     * `flags`: keys of `assess.results.MOTION_FLAGS`.
@@ -226,10 +225,7 @@ def scale_demands(demands: Demands, factor: float) -> Demands:
 
 
 def _own_demands(floor: Floor, scenario: str, progress: Progress) -> _ByAxis:
-    """Return the motions that the workbook gives for a floor itself and `scenario` uses; empty where there are none.
-
-    A PFV that is not given is NaN.
-    """
+    """Return the motions that the workbook gives for a floor and `scenario` uses, if any; a PFV not given is NaN."""
     found: dict[Axis, tuple[Demand, ...]] = {}
     for axis in AXES:
         if scenario in ("as filled", "recorded") and floor.records.get(axis):
@@ -393,9 +389,17 @@ class _Building:
         """Return the motion of a floor; nothing where it has none."""
         own = self.own[floor.floor]
         found = own or _interpolate(floor, [one for one in self.own.values() if one])
-        profile = PROFILES.get(self.scenario)
-        if not found and profile:
-            found = serve_by_profile(floor, profile, self.ground, self.ductility_reduction)
+        profile, ground = PROFILES.get(self.scenario), self.ground
+        (z, placed), ratio = ground.place(floor), ground.find_ratio(floor)
+        if not found and profile and z is not None and ratio is not None and ground.pga is not None:
+            period = ground.building.period if ground.is_period_given else None
+            amplification = profile.amplification(ratio, period, ductility_reduction=self.ductility_reduction)
+            one = Demand(
+                floor=floor, axis="X", source="profile", pfa=ground.pga * amplification, pfv=math.nan,
+                flags=("code_profile", *_name_ground(ground), *placed), profile=profile, clause=profile.cite(period),
+                height_ratio=ratio, amplification=amplification, shaking=ground.shaking, site=ground.site,
+            )  # fmt: skip
+            found = {"X": (one,), "Y": (replace(one, axis="Y"),)}  # alike along both axes
         if found:
             return {axis: tuple(self._complete(one) for one in found[axis]) for axis in found}
         served = {axis: self._serve_by_beam(floor, axis) for axis in AXES}
@@ -478,25 +482,6 @@ def _find_basis(ground: Ground, own: Collection[_ByAxis], axis: Axis) -> Basis:
     return replace(basis, known=known)
 
 
-def serve_by_profile(floor: Floor, profile: Profile, ground: Ground, ductility_reduction: float) -> _ByAxis:
-    """Return the PFA of a floor by a code's profile, alike along both axes; nothing where its inputs are missing.
-
-    Its PFV is NaN.
-    """
-    z, placed = ground.place(floor)
-    ratio = ground.find_ratio(floor)
-    if z is None or ratio is None or ground.pga is None:
-        return {}
-    period = ground.building.period if ground.is_period_given else None
-    amplification = profile.amplification(ratio, period, ductility_reduction=ductility_reduction)
-    one = Demand(
-        floor=floor, axis="X", source="profile", pfa=ground.pga * amplification, pfv=math.nan,
-        flags=("code_profile", *_name_ground(ground), *placed), profile=profile, clause=profile.cite(period),
-        height_ratio=ratio, amplification=amplification, shaking=ground.shaking, site=ground.site,
-    )  # fmt: skip
-    return {"X": (one,), "Y": (replace(one, axis="Y"),)}
-
-
 # ---------------------------------------------------------------- what is missing
 
 
@@ -506,9 +491,8 @@ def _missing(floor: Floor, scenario: str) -> list[Problem]:
     if scenario in PROFILES:
         message = fill(
             "floor '{floor}' has no Elevation, which the scenario '{scenario}' needs.",
-            floor=floor.floor,
-            scenario=fill(scenario),
-        )
+            floor=floor.floor, scenario=fill(scenario),
+        )  # fmt: skip
         return [] if placed else [Problem("error", "Floors", floor.cell("elevation"), message, _FILL_IN)]
     if scenario == "as filled":
         message, fix = describe_unserved(f"'{floor.floor}'", has_elevation=placed)

@@ -56,13 +56,8 @@ class GeneratedEnsemble:
         """The recorded motion as treated [m/s2], and its time step [s]."""
         return self.demand.recorded
 
-    @property
-    def factor(self) -> float:
-        """What the floor's motions are of those for `build_target` [-]: the scale of its record."""
-        return 1.0 if self.demand.record is None else self.demand.scale
-
     def build_target(self) -> "Target":
-        """Return what the motions are to match, but for `factor`: the record as it is."""
+        """Return what the motions are to match, but for their scale: the record as it is."""
         from assess.motion.target import recorded_target
 
         demand = self.demand
@@ -77,8 +72,8 @@ class GeneratedEnsemble:
         from assess.motion.shared_motions import share_motions
 
         phases = Phases(self.grid, self.seed, self.demand.axis, self.signs)
-        shared = share_motions(self.build_target(), phases, factor=self.factor, threads=threads, progress=progress)
-        step = self.grid.time_step
+        factor, step = 1.0 if self.demand.record is None else self.demand.scale, self.grid.time_step
+        shared = share_motions(self.build_target(), phases, factor=factor, threads=threads, progress=progress)
         is_weak = shared.generator.fit.pfv_ratio < WEAK_PFV  # NaN where no PFV is to be met
         return Motions(
             lambda first, count: [(shared.realise(first, count), step)], shared.generator.fit, shared.spectra, is_weak
@@ -235,10 +230,7 @@ def find_phase_signs(
 
 
 def find_clock(name: str, record: Record) -> tuple[Any, ...]:
-    """Return what tells on which clock, and in which earthquake, a record was made: the same for those on one clock.
-
-    `name` is the record as the workbook names it.
-    """
+    """Return clock and earthquake of a record, the same for all on one clock; `name` is as the workbook names it."""
     common = (record.event, record.start, record.time_step, record.corrected)
     if _HUNDREDTHS.search(record.start):
         return ("start", *common)

@@ -20,10 +20,8 @@ class Ground:
     * `building`: T1, by its height where it is not given, and its structure.
     * `is_from_sds`: whether PGA is 0.4 SDS.
     * `roof`: height of the roof [m], at least 0; None where neither Height nor Storeys nor any Elevation is given.
-    * `is_highest_floor`: whether `roof` is the highest floor of the workbook, which makes z/h larger than the roof
-      would.
-    * `shaking`: the assumed intensity that `motion` is the median of.
-    * `site`: the ShakeMap or the scenarios whose median it is.
+    * `is_highest_floor`: whether `roof` is the highest floor of the workbook, which makes z/h too large.
+    * `shaking`, `site`: the assumed intensity, the ShakeMap or the scenarios that `motion` is the median of.
     * `storeys`: storeys above ground, from which the elevations of numbered floors are assumed; None where a floor
       above the ground has its own.
     * `lowest`: the number of the ground floor.

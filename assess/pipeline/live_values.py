@@ -84,11 +84,10 @@ def _build_cases(items: Sequence[Item], motions: Sequence[Demand | None]) -> Cas
     cases = Cases.of(
         breadth=np.array([item.breadth for item in items], dtype=np.float64),
         height=np.array([item.height for item in items], dtype=np.float64),
-        pfa=pfa,
-        pfv=pfv,
+        pfa=pfa, pfv=pfv,
         centre=np.array([item.centre_of_gravity for item in items], dtype=np.float64),
         scanned=np.array([item.is_scanned for item in items], dtype=np.bool_),
-    )
+    )  # fmt: skip
     return replace(cases, dispersion=spread, peak=peak)
 
 
@@ -118,10 +117,7 @@ def with_live(content: Content, units: Units = "si", folder: Path | None = None)
 
 
 def without_shaking(content: Content, units: Units = "si") -> Content:
-    """Return a content whose floors have no shaking, with its live columns: B/H, and that shaking is missing.
-
-    Raises WorkbookError if the rows lack more than shaking.
-    """
+    """Return a content with live columns but no shaking: B/H, and that it is missing; WorkbookError if more is."""
     floors = [{**row, "pfa_x": 1.0} for row in content.rows["Floors"]]  # of which no column shows anything
     items, hint = _read({**content.rows, "Floors": floors}, units).items, gettext(NO_SHAKING)
     labels = [_say_class(one, None, 0.0) if one.anchored == YES else hint for one in items]

@@ -225,10 +225,7 @@ def find_piece_fragilities(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Study:
-    """How often the items of `groups` fall; `unit` is that of the levels.
-
-    `motions` fills while they are rocked, by the ensembles of the cases.
-    """
+    """How often items of `groups` fall at levels in a `unit`; `motions`, by ensemble, fills while they are rocked."""
 
     sweep: Sweep
     groups: Sequence[Sequence[int]]

@@ -54,10 +54,7 @@ UNKNOWN = {
 def remark(
     inventory: Inventory, demands: Demands, scenario: str, unconfirmed: Set[str] = frozenset()
 ) -> Iterator[Problem]:
-    """Yield warnings and notes on the motion of the floors and on the ground's.
-
-    `unconfirmed` are the floors of which a piece was simulated and is unconfirmed.
-    """
+    """Yield remarks on the motion of floors and ground; on `unconfirmed` floors a simulated piece is unconfirmed."""
     for demand in (one for ones in demands.values() for one in ones if not one.is_borrowed):
         if demand.loss > LOSS_TO_NOTE:
             message = fill(
@@ -68,7 +65,7 @@ def remark(
             much = demand.loss > LOSS_TO_WARN
             fix = fill("If the file is corrected already, say so in it (plain CSV: # corrected: yes).") if much else ""
             yield Problem("warning" if much else "note", "Floors", f"A{demand.floor.row}", message, fix)
-    yield from _on_shaking(inventory, demands, scenario)
+    yield from remark_on_shaking(inventory, demands, scenario)
     yield from _on_site(inventory, demands)
     for flag, (text, fix) in UNKNOWN.items():
         found = [name for (name, _), parallel in demands.items() if any(flag in one.flags for one in parallel)]
@@ -91,12 +88,8 @@ def remark(
         yield Problem("note", "Floors", "", message)
 
 
-def list_too_low(inventory: Inventory, demands: Demands, scenario: str) -> list[Problem]:
-    """Return the warnings that a larger peak is known of a floor, or of the ground, than the one used."""
-    return [one for one in _on_shaking(inventory, demands, scenario) if one.severity == "warning"]
-
-
-def _on_shaking(inventory: Inventory, demands: Demands, scenario: str) -> Iterator[Problem]:
+def remark_on_shaking(inventory: Inventory, demands: Demands, scenario: str) -> Iterator[Problem]:
+    """Yield remarks on peaks that are not used; a warning where one is larger than that which is."""
     for floor in inventory.floors:
         for axis in AXES:
             yield from _set_aside(floor, axis, demands, scenario)
@@ -181,9 +174,8 @@ def _on_heights(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     if building.height and building.height > FAR_ABOVE * max(highest, 0.0):
         message = fill(
             "z/h is taken against Height {height:g} m; the highest floor listed is at {highest:g} m.",
-            height=building.height,
-            highest=highest,
-        )
+            height=building.height, highest=highest,
+        )  # fmt: skip
         yield Problem("note", "Building", building.cell("height"), message)
     low, high = (times * CODE_FACTOR * (ground.roof or 0.0) ** CODE_POWER for times in TIMES_USUAL)
     if building.period and ground.roof and not low <= building.period <= high:
@@ -221,9 +213,8 @@ def _on_ground_pga(inventory: Inventory, demands: Demands, scenario: str) -> Ite
             message = fill(
                 "SDS is used for the code's force on anchors only: 0.4 SDS is {by_sds:.3f} g, but floors follow Ground "
                 "PGA {used:.3f} g.",
-                by_sds=by_sds / GRAVITY,
-                used=building.ground_pga / GRAVITY,
-            )
+                by_sds=by_sds / GRAVITY, used=building.ground_pga / GRAVITY,
+            )  # fmt: skip
             kind = _severity(by_sds, building.ground_pga)
             yield Problem(kind, "Building", building.cell("sds"), message, fill("Correct one of them, or clear it."))
 

@@ -1,11 +1,9 @@
 """How likely each route is blocked, against the PFA on its floors.
 
 At each value every floor of a route shakes with that PFA along both axes: by its own motions (those compatible with its
-record, or drawn where it has none), each scaled by the value over the floor's PFA. The same motions serve at every
-value; the shape of the spectrum stays, and PFV scales along. Draw k is one earthquake, as in a run: motion k scaled by
-one factor for the whole building, and every piece that reaches a route as it is in that draw, by the uncertainty of the
-workbook; with `settings.ideal` without either. A piece that is too stocky to rock falls by the formula's chance at that
-PFA. A blank axis takes the worse one at each value.
+record, or drawn where it has none), each scaled by the value over the floor's PFA, as in `assess.pipeline.verify`. The
+uncertainty is that of the workbook; with `settings.ideal` there is none. A piece that is too stocky to rock falls by
+the formula's chance at that PFA. A blank axis takes the worse one at each value.
 
 Unlike in an assessment, the formula never stands in for what rocking gives: it gives chances with no shaking at all.
 Where the motions may be too weak, the chances are lower bounds, and those pieces are counted.
@@ -253,13 +251,11 @@ class _Study:
         unknown = [at for at in segments if last.is_unknown(at) or not last.is_evaluated(at)]
         reaching = {item for item, _ in first.keys(segments, anchors_fail=True)}
         return RouteFragility(
-            route=name,
-            floors=floors,
+            route=name, floors=floors,
             blocked=tuple(one.chances[0] for one in judged),
             if_anchors_fail=tuple(one.if_anchors_fail for one in judged if one.if_anchors_fail) or None,
             is_evaluated=len(unknown) < len(segments),
             unevaluated=tuple(segments[at].segment for at in unknown),
             doubtful=sum(assessment.inventory.items[item].quantity for item in reaching & doubtful),
-            scenario_pfa=(min(peaks), max(peaks)) if peaks else None,
-            causes=causes,
-        )
+            scenario_pfa=(min(peaks), max(peaks)) if peaks else None, causes=causes,
+        )  # fmt: skip

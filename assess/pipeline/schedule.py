@@ -159,8 +159,7 @@ def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> Wo
         shear.append(whole if detail.is_at_base else anchor.shear_kn)
     code = max(codes, default=None)
     return WorkRow(
-        floor=first.floor,
-        room=first.room,
+        floor=first.floor, room=first.room,
         items=tuple(one.item for one in rows),
         item_indices=tuple(one.index for one in rows),
         pieces=pieces, detail=detail.key, tension_kn=max(tension), tension_high_kn=max(high), tension_code_kn=code,

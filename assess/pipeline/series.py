@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.errors import CancelledError
-from assess.methods import Cases, Joint
+from assess.methods import Cases
 from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import Demand
 from assess.progress import SILENT, Progress
@@ -89,49 +89,40 @@ def build_series(
     arrays |= {f"photo/{at}": np.frombuffer(inventory.photos[name], dtype=np.uint8) for name, at in order.items()}
     for index, demand in enumerate(demands):
         progress.check()
-        arrays |= {f"motion/{index}/{name}": array for name, array in _of_motion(demand, joints.get(demand))}
+        own, motion, joint = dict[str, NDArray[Any]](), demand.motion, joints.get(demand)
+        spectra = None if joint is None else joint.spectra
+        if motion is not None and not demand.is_borrowed:
+            own["acceleration_g"] = (motion.acceleration / GRAVITY).astype(np.float32)
+        if joint is not None:
+            own |= {"cases": joint.cases.astype(np.int32), "runs": joint.runs.astype(np.int32)}
+            own |= {"overturned": np.packbits(joint.fell, axis=1), "rotation": joint.rotation}
+            examples = enumerate(joint.examples)
+            own |= {f"example/{at}": (values / GRAVITY).astype(np.float32) for at, (values, _) in examples}
+            own["example_steps_s"] = np.array([step for _, step in joint.examples])
+        if spectra is not None:
+            own |= {"periods_s": spectra.periods, "spectra_g": (spectra.ordinates / GRAVITY).astype(np.float32)}
+        if spectra is not None and spectra.target is not None:
+            own["target_g"] = spectra.target / GRAVITY
+        elif spectra is not None and motion is not None:
+            from assess.motion.spectrum import response_spectrum
+
+            recorded = response_spectrum(motion.acceleration, motion.time_step, spectra.periods).pseudo
+            own["record_spectrum_g"] = recorded / GRAVITY
+        arrays |= {f"motion/{index}/{name}": array for name, array in own.items()}
     return arrays | {f"contours/{name}": array for name, array in _contours(assessment, results)}
 
 
 def write_series(path: Path, arrays: Arrays, progress: Progress = SILENT) -> None:
     """Write the series to `path`; OSError if it cannot be written; CancelledError, and no file, if stopped."""
     try:
-        with (
-            _CheckedFile(path, progress) as file,
-            zipfile.ZipFile(file, "w") as box,
-        ):  # numpy.savez may not close its own
+        # numpy.savez may not close its own file
+        with _CheckedFile(path, progress) as file, zipfile.ZipFile(file, "w") as box:
             for name, array in arrays.items():
                 with box.open(f"{name}.npy", "w", force_zip64=True) as part:
                     np.lib.format.write_array(part, array, allow_pickle=False)
     except CancelledError:
         path.unlink(missing_ok=True)
         raise
-
-
-def _of_motion(demand: Demand, joint: Joint | None) -> Iterator[tuple[str, NDArray[Any]]]:
-    if demand.motion is not None and not demand.is_borrowed:
-        yield "acceleration_g", (demand.motion.acceleration / GRAVITY).astype(np.float32)
-    if joint is None:
-        return
-    yield "cases", joint.cases.astype(np.int32)
-    yield "runs", joint.runs.astype(np.int32)
-    yield "overturned", np.packbits(joint.fell, axis=1)
-    yield "rotation", joint.rotation
-    for at, (values, _) in enumerate(joint.examples):
-        yield f"example/{at}", (values / GRAVITY).astype(np.float32)
-    yield "example_steps_s", np.array([step for _, step in joint.examples])
-    spectra, motion = joint.spectra, demand.motion
-    if spectra is None:
-        return
-    yield "periods_s", spectra.periods
-    yield "spectra_g", (spectra.ordinates / GRAVITY).astype(np.float32)
-    if spectra.target is not None:
-        yield "target_g", spectra.target / GRAVITY
-    elif motion is not None:
-        from assess.motion.spectrum import response_spectrum
-
-        own = response_spectrum(motion.acceleration, motion.time_step, spectra.periods).pseudo
-        yield "record_spectrum_g", own / GRAVITY
 
 
 def _contours(assessment: Assessment, results: Iterable[ItemResult]) -> Iterator[tuple[str, NDArray[Any]]]:

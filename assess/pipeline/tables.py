@@ -15,14 +15,15 @@ from assess.methods.simulate import LOOKS, interval_width
 from assess.model import AXES, Item
 from assess.motion.record import treatment
 from assess.motion.scenario import PROFILES
+from assess.motion.spatial_field import SCATTERS
 from assess.pipeline.anchors import build_anchors
 from assess.pipeline.assessment import Assessment
-from assess.pipeline.city_draws import describe_draws
 from assess.pipeline.demand import Demand, find_shaking, find_site
-from assess.pipeline.remarks import list_too_low
+from assess.pipeline.remarks import remark_on_shaking
 from assess.results import (
     CaseTable,
     DrawTable,
+    EarthquakeDraws,
     EnsembleRow,
     FloorRow,
     ItemRow,
@@ -68,7 +69,7 @@ def _shared(row: Any, source: type) -> list[str]:
 def build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path, routes: "RouteTables") -> Results:
     """Return the results but for their schedule; `folder` is that of their series."""
     inventory, example = assessment.inventory, choose_example(assessment)
-    found = list_too_low(inventory, assessment.filled, assessment.scenario)
+    shaking = remark_on_shaking(inventory, assessment.filled, assessment.scenario)
     place = {demand: index for index, demand in enumerate(demands)}
     falls = assessment.find_falls()
     draws, is_known = min((one.size for one in falls.fell.values()), default=0), falls.stands.copy()
@@ -84,8 +85,7 @@ def build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path, 
             )
             for floor in inventory.floors
         ),
-        motions=build_motions(assessment, demands),
-        item_rows=build_items(assessment, routes),
+        motions=build_motions(assessment, demands), item_rows=build_items(assessment, routes),
         cases_table=CaseTable(  # every pair of piece and motion with what each method gives
             item=assessment.case_item.astype(np.int32),
             motion=np.array([place[demand] for demand in assessment.case_demand], dtype=np.int32),
@@ -94,7 +94,7 @@ def build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path, 
         ),
         route_tables=routes, annual=None if assessment.annual is None else assessment.annual.tables,
         places=inventory.places, catalogue=inventory.catalogue, problem_rows=assessment.problems,
-        underestimates=tuple(problem.message for problem in found),
+        underestimates=tuple(one.message for one in shaking if one.severity == "warning"),
         methods=tuple(one.info for one in assessment.methods),
         worked=() if example is None else tuple(work_example(example, assessment)), worked_item=example,
         series=Series(folder / "series.npz"), draws=DrawTable(draws, np.packbits(fell, axis=1), is_known),
@@ -224,21 +224,27 @@ def build_provenance(assessment: Assessment) -> Provenance:
     """Return what the run is made again from."""
     inventory, demands, suite = assessment.inventory, assessment.demands, assessment.suite
     spread = max((one.dispersion for parallel in demands.values() for one in parallel), default=0.0)
+    drawn, ground = assessment.cases.earthquakes, inventory.site_ground
+    earthquakes = None  # how draws depend on the place and on scenarios
+    if assessment.settings.city or drawn.given:
+        earthquakes = EarthquakeDraws(
+            is_city=assessment.settings.city, is_placed=drawn.place is not None, shared=drawn.shared,
+            is_shared_given=ground is not None and ground.shared is not None, measure=drawn.measure,
+            range_km=SCATTERS[drawn.measure].range_km, scenarios=len(drawn.given), scenario_share=drawn.given_share,
+        )  # fmt: skip
     return Provenance(
         version=__version__, code=find_code(),
         platform=versions(has_rocked=bool(assessment.joints), has_routes=bool(inventory.routes)),
         workbook=inventory.file_name, sha256=inventory.sha256, files=dict(inventory.files),
         scenario=assessment.scenario, uncertainty=replace(assessment.cases.uncertainty, motion=spread),
-        earthquakes=describe_draws(inventory, assessment.settings, assessment.cases.earthquakes),
-        shaking=find_shaking(demands), site_ground=find_site(demands),
+        earthquakes=earthquakes, shaking=find_shaking(demands), site_ground=find_site(demands),
         suite=None if suite is None else SuiteInfo(
             folder=suite.folder, names=tuple(name for name, _ in suite.motions), files=dict(suite.files),
             is_scaled=assessment.settings.scale_motions,
             pfa_g=tuple(_sure(motion.pfa, "g") for _, motion in suite.motions),
             pfv_cm_s=tuple(_sure(motion.pfv, "cm/s") for _, motion in suite.motions),
         ),
-        language=inventory.report_language,
-        sheets=dict(inventory.sheets),
+        language=inventory.report_language, sheets=dict(inventory.sheets),
         letters={sheet: dict(letters) for sheet, letters in inventory.letters.items()},
         extra_columns=tuple(inventory.extra_columns), interval_z=interval_width(assessment.settings), looks=LOOKS,
         profiles=tuple(PROFILES.values()),

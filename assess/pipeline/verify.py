@@ -90,11 +90,9 @@ def remark_suite(suite: "Suite | None", cases: Cases) -> list[Problem]:
             "the user's own motions are weaker than floor '{floor}' {axis}: {peaks}.",
             floor=demand.floor.floor, axis=demand.axis, peaks=peaks,
         )  # fmt: skip
-        found.append(Problem("warning", "", "", message, WEAK))
+        fix = fill("Simulation may raise a class there, but not lower it. Scale the motions, or choose stronger ones.")
+        found.append(Problem("warning", "", "", message, fix))
     return found
-
-
-WEAK = fill("Simulation may raise a class there, but not lower it. Scale the motions, or choose stronger ones.")
 
 
 def verify(

@@ -257,8 +257,7 @@ def evaluate_room(scene: Scene, place: Place, part: Part, rows: Sequence[Segment
         decisive_segment=None if telling is None else scene.find_decisive(telling, is_known=is_known), fixes=fixes,
         is_fixed=is_fixed, missing_after=missing_after,
         unevaluated_segments=tuple(scene.obstructions[at].segment.segment for at in unevaluated),
-        unevaluated_indices=unevaluated,
-        ways=tuple(ways),
+        unevaluated_indices=unevaluated, ways=tuple(ways),
     )  # fmt: skip
 
 
@@ -308,15 +307,13 @@ def evaluate_floor(
         worst = combine(fallen[1], fallen[2], scene.any_left_out_falls(ways))
         any_cut_off = standing[0] if scene.is_known(standing[0], worst) else None
     return FloorRoutesRow(
-        floor=floor,
-        segments=len(segments),
+        floor=floor, segments=len(segments),
         blocked_segments_expected=sum(one.blocked.probability for one in known if one.blocked),
         unknown_segments=len(segments) - len(known), routes=len(routes), blocked_routes_expected=sum(blocked),
         unknown_routes=len(routes) - len(blocked), rooms=len(own),
         cut_off_rooms_expected=sum(room.loses_every_exit.probability for room in own if room.is_known),
         unknown_rooms=sum(not room.is_known for room in own),
-        any_room_cut_off=any_cut_off,
-        uncounted_pieces=count_unplaced(scene, floor),
+        any_room_cut_off=any_cut_off, uncounted_pieces=count_unplaced(scene, floor),
     )  # fmt: skip
 
 
@@ -374,8 +371,7 @@ def find_unfurnished(inventory: Inventory) -> Iterator[Problem]:
             "Furniture is listed in {listed:,} of {n:,} rooms and corridors of Places, not in {room}: ways through the "
             "others count as free of furniture.",
             count,
-            listed=count - len(found),
-            room=found[0].place,
-        )
+            listed=count - len(found), room=found[0].place,
+        )  # fmt: skip
         cell = inventory.locate("Places", found[0].row, "place")
         yield Problem("warning", "Places", cell, message, fill("List the furniture of every room on the way."))

@@ -48,10 +48,7 @@ class Part:
         return {place for edge in self.edges for place in edge[:2]}
 
     def cut_off(self, blocked: Blocked, sources: Sequence[str], every: int) -> list[int]:
-        """Return for each of some places the set of the draws in which it reaches none of the targets.
-
-        `every` is the set of all draws.
-        """
+        """Return for each place the set of the draws, of all draws `every`, in which it reaches none of the targets."""
         reached = dict.fromkeys(self.places, 0) | dict.fromkeys(self.targets, every)
         passable = [(one, other, every & ~blocked[segment]) for one, other, segment in self.edges]
         changed = True
@@ -125,10 +122,7 @@ def find_ends(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> tupl
 
 
 def _list_led(segments: Mapping[int, Segment], kinds: Mapping[str, str]) -> Iterator[tuple[Part, list[str]]]:
-    """Yield the parts of a route with what they lead to, and what they serve.
-
-    The top of a flight of its own is no way out, its end is.
-    """
+    """Yield parts of a route, with what they lead to (the end of a flight of its own, not its top), and serve."""
     graph = build_graph(segments)
     for part in find_parts(graph, kinds):
         own, flights, stairs = graph.subgraph(part.places), [segments[at] for at in part.segments], part.targets

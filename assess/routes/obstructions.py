@@ -29,7 +29,7 @@ from assess.progress import SILENT, Progress
 from assess.route_results import BesideRow
 from assess.routes.chances import Key, union
 from assess.routes.geometry import Band, Shape, build_bands, build_shapes
-from assess.routes.walls import find_walls
+from assess.routes.walls import MOST_NAMED, find_walls
 from assess.routes.widths import NARROWER
 from assess.workbook.names import key
 from assess.workbook.schema import DEFAULT_WIDTH
@@ -200,8 +200,6 @@ CLEARLY_NEARER = 0.1
 """By how much [m] a given Edge distance must be nearer than the plan says for it to count instead."""
 TOUCH = 1e-6
 """Area [m2] up to which two shapes only touch."""
-MOST_NAMED = 3
-"""Pieces that a problem names."""
 
 
 @dataclass(frozen=True, slots=True)

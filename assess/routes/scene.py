@@ -282,10 +282,7 @@ class Scene:
         return self._keep((keys, fall), make)
 
     def narrower(self, draws: Draws, segment: int, width: float) -> int:
-        """Return the set of the draws in which the width left of a segment is under a width [m].
-
-        Pieces that the draws do not contain stand.
-        """
+        """Return the set of the draws in which the width left is under a width [m]; pieces not in the draws stand."""
         if (segment, width) not in draws.narrower:
             self.progress.check()
             found = self.obstructions[segment].narrower(draws.fallen, draws.every, width)
@@ -313,10 +310,7 @@ class Scene:
         return {item: value for item, value in found.items() if value > 0}
 
     def bounds(self, segments: Collection[int], happens: Happens) -> tuple[list[Chance], list[Chance]]:
-        """Return the chances of what happens on some segments if all anchors hold.
-
-        With unconfirmed pieces standing, and with them fallen: the same list where there are none.
-        """
+        """Return chances if all anchors hold, unconfirmed pieces standing and fallen: the same list without any."""
         standing = self.couplings(segments)
         chances = find_chances(standing, happens, self.z)
         if not standing.unconfirmed:
@@ -391,9 +385,8 @@ class Scene:
             by_unconfirmed, by_missing = if_fallen != best, if_missing != best
             verdict = Verdict(
                 RouteState.NOT_KNOWN,
-                by_unconfirmed=by_unconfirmed or not by_missing,
-                by_missing=by_missing or not by_unconfirmed,
-            )
+                by_unconfirmed=by_unconfirmed or not by_missing, by_missing=by_missing or not by_unconfirmed,
+            )  # fmt: skip
         return Settled(verdict, standing, fallen, record)
 
     def list_missing(self, verdict: Verdict, segments: Collection[int]) -> tuple[MissingRow, ...]:

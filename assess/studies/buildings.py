@@ -38,10 +38,7 @@ RECORDED, FIRST_TOGETHER = len(LEVELS), len(LEVELS) + 1
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """One horizontal channel: its file, its floor, and the axis of the building along which it records.
-
-    Two channels of one axis may point in opposite directions.
-    """
+    """One horizontal channel: file, floor, and axis of the building; two of one axis may point in opposite ways."""
 
     building: str
     level: str

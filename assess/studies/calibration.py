@@ -182,10 +182,7 @@ def count_modes(period: float) -> int:
 
 
 def find_shares(modes: int, place: float) -> FloatArray:
-    """Return participation factor times shape of each mode at the height z/h [-], (modes,); over all modes they are 1.
-
-    At z/h 0 they are 0: the ground.
-    """
+    """Return participation factor times shape of each mode at z/h [-], (modes,): 0 at the ground, 1 over all modes."""
     odd = 2 * np.arange(modes) + 1
     return np.asarray(4 / (np.pi * odd) * np.sin(odd * np.pi / 2 * place), dtype=np.float64)
 
@@ -293,10 +290,7 @@ class Score:
 
 
 def find_error(values: FloatArray, groups: NDArray[np.int64]) -> float:
-    """Return the standard error of the mean of `values` (n,) by the jackknife over groups of them; NaN with one group.
-
-    Groups (n,) are told apart by their integers.
-    """
+    """Return the standard error of the mean of `values` (n,) by the jackknife over `groups` (n,); NaN with one."""
     _, which = np.unique(groups, return_inverse=True)
     sums, counts = np.bincount(which, values), np.bincount(which)
     if counts.size < 2:

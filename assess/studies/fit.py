@@ -190,10 +190,7 @@ class Surface:
 
 
 def fit_surface(candidate: Candidate, points: Points) -> Surface:
-    """Fit a candidate by ordinary least squares, and once more without each group.
-
-    Raises InputError if the cases, or those without one group, do not determine it.
-    """
+    """Fit a candidate by least squares, and without each group; InputError if the cases do not determine it."""
     columns = np.column_stack(expand(candidate.base, candidate.powers, points.x, points.y))
     coefficients, condition = _solve(columns, points.z, candidate)
 
@@ -480,10 +477,9 @@ def run(options: Options) -> Finding:
     return write_finding(
         "fit",
         collect(fits),
-        tables={"fit": Table(columns=COLUMNS, rows=rows)},
-        figures={"fit.svg": draw(7, 2.7, partial(_paint, fits))},
+        tables={"fit": Table(columns=COLUMNS, rows=rows)}, figures={"fit.svg": draw(7, 2.7, partial(_paint, fits))},
         files={f"{one.key}.toml": write_model(one) for one in build_models(fits, options)},
-    )
+    )  # fmt: skip
 
 
 def build_models(fits: Fits, options: Options) -> Iterator[Fitted]:

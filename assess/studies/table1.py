@@ -178,8 +178,6 @@ def _paint(climbed: Climbed, figure: Any) -> None:
     panels[0].legend(fontsize=6, framealpha=1, edgecolor="none", loc="upper right")
 
 
-# ---------------------------------------------------------------- a folder of records
-
 LISTED = 8
 """Channels, and files left out, on the page; the .csv has all."""
 LONGEST_REASON = 110
@@ -291,9 +289,6 @@ def quote(name: str) -> str:
     fence = "`" * (1 + max((len(one) for one in re.findall("`+", line)), default=0))
     edge = " " if line.startswith("`") or line.endswith("`") else ""
     return f"{fence}{edge}{line}{edge}{fence}"
-
-
-# ---------------------------------------------------------------- the study
 
 
 def count_classes(chances: Mapping[str, float]) -> dict[RiskClass, int]:

@@ -154,8 +154,7 @@ def compare(compared: Sequence[Compared]) -> Comparison:
             pairs.append(Pair(a.building, a.level, (a.name, b.name), a.axis == b.axis, pfa, apart))
     fallen = pool(compared, OR, is_at_rest)[1]
     return Comparison(
-        agreements=agreements,
-        uncertain=uncertain,
+        agreements=agreements, uncertain=uncertain,
         ratios=[one.ratio for one in compared],
         biases={key: [agree([one], key).bias for one in compared] for key in FORMULAS},
         criteria=criteria,
@@ -165,7 +164,7 @@ def compare(compared: Sequence[Compared]) -> Comparison:
             above_by_integration=_share(fallen >= LIMITS[0] * compared[0].trials.runs),
         ),
         pairs=pairs,
-    )
+    )  # fmt: skip
 
 
 def _agree_all(own: Sequence[Compared], chosen: Chosen, *, uncertain: bool) -> dict[str, Agreement]:
@@ -221,9 +220,8 @@ def run(options: Options) -> Finding:
     return write_finding(
         "table2",
         collect(compared, found, options),
-        tables=tables,
-        figures={"table2.svg": draw(7, 2.6, partial(_paint, found))},
-    )
+        tables=tables, figures={"table2.svg": draw(7, 2.6, partial(_paint, found))},
+    )  # fmt: skip
 
 
 def _channel_rows(compared: Sequence[Compared]) -> Iterator[Row]:

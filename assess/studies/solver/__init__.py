@@ -378,8 +378,6 @@ def collect(limits: Sequence[Limit], found: Results, bands: Sequence[Row]) -> di
     }  # fmt: skip
 
 
-# ---------------------------------------------------------------- histories near the limits, as in Fig. 2
-
 END, STEP = 5.4, 0.03
 """Histories: length and time step [s]."""
 
