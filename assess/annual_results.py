@@ -10,13 +10,18 @@ YEARS = 50
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AnnualRow:
-    """How often a year something happens: the `rate`, and chances of at least once.
+    """How often a year something happens.
 
-    * `low`, `high`: 95 % sampling interval of the rate, for the number of draws only. None where it happened in no
-      draw, where not all was simulated, or where the hazard curve does not reach far enough.
-    * `fit`: what was integrated: a lognormal fitted to the shares, or their table where that is not near enough.
-    * `median_g` [g], `dispersion`, `misfit`: of that lognormal in ground PGA, and its largest difference from a share;
-      None where it was not used, or half was not reached within the curve.
+    * `rate`: times a year.
+    * `low`, `high`: 95 % sampling interval of the rate: it covers the number of draws only. None where it happened in
+      no draw, where not all was simulated, or where the hazard curve does not reach far enough.
+    * `chance_a_year`, `chance_in_50_years`: chance of at least once.
+    * `fit`: what was integrated: a lognormal fitted to the shares, or the table of shares where that is not near
+      enough.
+    * `median_g`: ground PGA at which it happens in half of the draws [g], by the lognormal; None where that was not
+      used, or half was not reached within the curve.
+    * `dispersion`: logarithmic standard deviation of the lognormal; None likewise.
+    * `misfit`: its largest difference from a share.
     * `at_least`: whether the rate is a lower bound: the motions may be too weak, the hazard curve does not reach far
       enough, or several pieces of one row were taken to fall together.
     * `ends_matter`: whether more than 5 % of the rate comes, or could come, from outside the hazard curve.
@@ -39,20 +44,25 @@ class AnnualRow:
 class AnnualTables:
     """What annual chances rest on, and those of the building.
 
+    * `file`: the file of the hazard curve.
     * `missing`: why nothing was evaluated, and what to fill in; empty where it was.
-    * `file`, `latitude`, `longitude` [deg]: of the hazard curve and its site, `distance_km` from the building.
+    * `latitude`, `longitude`: of the site of the curve [deg].
+    * `distance_km`: from there to the building.
     * `curve_pga_g`, `curve_rate`: points of the curve: peak ground acceleration, and how often a year it is exceeded.
-    * `ground_pga_g`: of the scenario: the floors' motions are taken to grow in proportion to it.
+    * `ground_pga_g`: ground PGA of the scenario: the floors' motions are taken to grow in proportion to it.
     * `motion_dispersion`: logarithmic standard deviation of the floors' motions at a ground PGA.
-    * `runs`, `factors`: draws at each level, and factors on the motions of the scenario.
-    * `pieces`, `not_evaluated`, `cannot_rock`: free-standing pieces that are counted, not simulated, or too stocky.
+    * `runs`: draws at each level.
+    * `factors`: factors on the motions of the scenario under which every piece was rocked.
+    * `pieces`, `not_evaluated`, `cannot_rock`: free-standing pieces that are counted, those that are not, as they were
+      not simulated, and those that are too stocky to rock.
     * `at_least`: those of the counted ones whose motions may be too weak.
-    * `is_lower_bound`: whether the expected falls are one: for that, because some pieces were not simulated, or because
-      the hazard curve does not reach far enough.
-    * `expected_falls`, `expected_low`, `expected_high`: pieces that fall a year on average, and the 95 % sampling
-      interval of that; None where nothing fell.
-    * `life_safety_pieces`, `life_safety`: counted pieces of that Importance, and that any of them falls (those of one
-      row together); None where there are none.
+    * `is_lower_bound`: whether the expected falls are a lower bound: for that, because some pieces were not simulated,
+      or because the hazard curve does not reach far enough.
+    * `expected_falls`: free-standing pieces that fall a year, on average.
+    * `expected_low`, `expected_high`: 95 % sampling interval of that; None where nothing fell.
+    * `life_safety_pieces`: counted pieces whose Importance is life safety; those of one row fall together.
+    * `life_safety`: any of those falls; None where there are none.
+    * `remarks`: what a reader has to know of the curve and its ends.
     """
 
     file: str

@@ -124,15 +124,17 @@ _BY_WORKBOOK = ("scenario", "class_by")  # settings of which None stands for wha
 class Settings:
     """How an inventory is assessed.
 
-    Words are accepted in any spelling ("asce 7-22", "ASCE_7-22") and stored in the one listed here. Raises
-    SettingsError if a value cannot be used.
+    Words are accepted in any spelling ("asce 7-22", "ASCE_7-22") and stored in the one listed here.
 
-    * `scenario`, `class_by`: one of `SCENARIOS`, `CLASS_BY`; None takes the workbook's own, "as filled" and "best
-      formula" where that is blank. `verify`: one of `VERIFY`.
+    * `scenario`: One of `SCENARIOS`; None takes the workbook's own, which is "as filled" where it is blank.
+    * `class_by`: Which formula gives the class where nothing was simulated, one of `CLASS_BY`; None takes the
+      workbook's own, which is "best formula" where it is blank.
+    * `verify`: Which pieces are simulated by direct integration, one of `VERIFY`.
     * `runs` (int or "auto"): Motions of each floor and axis, 1 to 100,000; "auto" adds motions until every piece's
       interval lies within one class, at most 5,000. 0 of 100 cannot show "low": the interval's upper end is 0.037.
     * `seed`: Random seed of the generated motions, 0 or above.
-    * `scale`: Factor on the motion of every floor, of records and of peaks alike [-], above 0 and at most 10.
+    * `scale`: Factor on the motion of every floor, of records and of peaks alike [-], above 0 and at most 10: what a
+      weaker or stronger earthquake of the same kind would do.
     * `ideal`: Whether the adopted chance is that of exactly this motion and of every piece exactly as given, without
       the uncertainty of either.
     * `scale_motions`: Whether motions of the user's own are scaled to each floor's PFA.
@@ -153,6 +155,9 @@ class Settings:
     * `route_risk`: Limit on the chance that an evacuation route is blocked [-], above 0 and below 1: a route is open
       where the upper end of its interval is below it, and fixes are sought until that holds. 0.03 is where the class
       low ends.
+
+    Raises SettingsError if a value cannot be used: an `InputError` and a `ValueError`, whose message begins with the
+    setting's name.
     """
 
     scenario: Scenario | None = None
