@@ -670,12 +670,10 @@ def build_table(results: Results, name: str) -> Table:
     floors = {one.floor: one for one in results.floor_rows}
     tables: Mapping[str, tuple[Iterable[Field], Sequence[Any]]] = {
         "floors": (FLOOR_FIELDS, [{"floor": floors[one.floor], "motion": one} for one in results.motions]),
-        "segments": (row_fields(SegmentRow), routes.segments),
-        "routes": (row_fields(RouteRow), routes.routes),
-        "rooms": (row_fields(RoomRow), routes.rooms),
-        "schedule": (ENTRY_FIELDS, results.schedule.rows),
+        "segments": (row_fields(SegmentRow), routes.segments), "routes": (row_fields(RouteRow), routes.routes),
+        "rooms": (row_fields(RoomRow), routes.rooms), "schedule": (ENTRY_FIELDS, results.schedule.rows),
         "problems": (row_fields(Problem), results.problem_rows),
-    }
+    }  # fmt: skip
     return Table.of(*tables[name])
 
 

@@ -48,9 +48,6 @@ def _plain(text: str) -> str:
     return re.sub(r"[\s_\-\u2010-\u2015\u2212]", "", unicodedata.normalize("NFKC", text)).casefold()
 
 
-# ---------------------------------------------------------------- one reader for each kind of value
-
-
 def _read_choice(value: Any, choices: tuple[str, ...]) -> str | None:
     return match_choice(value, choices) if isinstance(value, str) else None
 

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 FIGURES = (".png", ".svg", ".pdf")  # kinds of figures that can be written
 
-# ---------------------------------------------------------------- what completes an option in a shell
-
 
 def one_of(values: Sequence[str]) -> Callable[[str], list[str]]:
     """Return what completes one of some words, in capitals or not; spaces become hyphens, for the shell."""
@@ -39,8 +37,6 @@ def list_of(values: Sequence[str]) -> Callable[[str], list[str]]:
 
     return complete
 
-
-# ---------------------------------------------------------------- options
 
 Workbook = Annotated[Path, typer.Argument(help="The inventory, an .xlsx workbook.", show_default=False)]
 Runs = Annotated[
@@ -302,8 +298,6 @@ def check_size(option: str, value: float, name: str = "") -> None:
     if not low <= value <= high:
         raise InputError(f"--{option} is {value:g}{unit}, expected {low:g} to {high:g}{unit}")
 
-
-# ---------------------------------------------------------------- levels of shaking
 
 MOST_LEVELS = 50
 _NUMBER = r"(\d{1,4}(?:\.\d{0,12})?|\.\d{1,12})"

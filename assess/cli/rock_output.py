@@ -219,12 +219,10 @@ def describe(case: Case, found: Found) -> dict[str, Any]:
     response = found.response
     return {
         **describe_verdict(response),
-        "pfa_g": case.pfa_g,
-        "critical_angle_rad": response.critical_angle,
-        "frequency_parameter_rad_s": response.frequency_parameter,
-        "restitution": response.restitution,
+        "pfa_g": case.pfa_g, "critical_angle_rad": response.critical_angle,
+        "frequency_parameter_rad_s": response.frequency_parameter, "restitution": response.restitution,
         **found.document,
-    }
+    }  # fmt: skip
 
 
 def describe_verdict(response: Response) -> dict[str, Any]:

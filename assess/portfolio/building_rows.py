@@ -88,11 +88,9 @@ def build_tables(
 def build_skipped(source: Source, problems: Sequence[Problem]) -> dict[str, list[list[Any]]]:
     """Return the rows of a building that could not be assessed, with the reasons."""
     record: Record = {
-        "path": source.path,
-        "status": "skipped",
-        "inventory": "assumed" if source.kind == "assumed" else None,
+        "path": source.path, "status": "skipped", "inventory": "assumed" if source.kind == "assumed" else None,
         "warnings": sum(one.severity == "warning" for one in problems),
-    }
+    }  # fmt: skip
     if source.index is not None:
         use = spell_use(source.index.use)
         record |= {"index": source.index, "site": source.index.as_building(), "use": use}

@@ -136,9 +136,6 @@ def sign_of_routes(row: Row) -> Sign:
     return BY_ROUTES[found.replace(" ", "-")]
 
 
-# ---------------------------------------------------------------- the map
-
-
 EARTH = 6371.0  # mean radius of the Earth [km]
 SEA, GROUND = "#e3ebf1", "#f3f3f0"
 """Colour behind a map with a background, which is water where that has no area, and without one."""
@@ -285,9 +282,6 @@ def draw_map(
     )
 
 
-# ---------------------------------------------------------------- what lies behind
-
-
 def _draw_background(background: Background, frame: Frame) -> Iterable[str]:
     import shapely
 
@@ -358,9 +352,6 @@ def find_bar(frame: Frame) -> float:
     most = frame.wide / frame.scale / 4
     power = 10.0 ** math.floor(math.log10(most))
     return max(step * power for step in _STEPS if step * power <= most)
-
-
-# ---------------------------------------------------------------- lines of equal PGA
 
 
 def list_isolines(city: City, ground: GroundField | None) -> tuple[Isoline, ...]:

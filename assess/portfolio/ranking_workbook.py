@@ -39,11 +39,9 @@ def render_ranking(city: City, *, options: ReportOptions | None = None, progress
         write_sheets(
             folder / "ranking.xlsx",
             [("summary", _("Summary"), partial(_write_summary, city)), *sheets],
-            title=title,
-            created=(find_source_date() or CREATED).replace(tzinfo=None),
-            texts=(title, "", say.say_ground(city)[:120]),
-            progress=progress,
-        )
+            title=title, created=(find_source_date() or CREATED).replace(tzinfo=None),
+            texts=(title, "", say.say_ground(city)[:120]), progress=progress,
+        )  # fmt: skip
         return (folder / "ranking.xlsx").read_bytes()
 
 
