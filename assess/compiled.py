@@ -20,8 +20,8 @@ OPTIONS: Mapping[str, Any] = {
 def compiled(function: _Function) -> _Function:
     """Compile `function` when it is first called, and keep that for the next process in the user's cache folder.
 
-    A folder that NUMBA_CACHE_DIR names is used instead. Compiled code is neither kept in nor loaded from a folder that
-    others can write to, see `assess.cache_folder`; where nothing can be kept, each process compiles anew.
+    A folder that NUMBA_CACHE_DIR names is used instead. Where neither is safe (`assess.cache_folder`), each process
+    compiles anew.
     """
     settings = cast("Any", config)
     before = settings.CACHE_DIR

@@ -12,10 +12,7 @@ LAST = 253_402_300_799  # the last second of the year 9999, the latest that date
 
 
 def find_source_date() -> datetime.datetime | None:
-    """Return the time in UTC that SOURCE_DATE_EPOCH gives; None where it is not set, or empty.
-
-    Raises InputError if it is no number of seconds from 1970 to 9999.
-    """
+    """Return the time in UTC that SOURCE_DATE_EPOCH gives, None without one; InputError if it is no such number."""
     text = os.environ.get(DATE, "")
     if not text:
         return None

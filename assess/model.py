@@ -198,7 +198,7 @@ def _parse_checked(data: bytes, file: str, sha256: str) -> tuple[Record, ...]:
 class FloorPlan:
     """A plan as it lies under the pieces of a floor: its lower left corner and sides [m], turned about that corner.
 
-    `content` is a grey JPEG; or, if `is_lines`, what `assess.plans.linework.unpack` reads. `turn_deg`: anticlockwise.
+    `content` is a grey JPEG; or, if `is_lines`, what `linework.unpack` reads. `turn_deg`: anticlockwise.
     """
 
     path: Path
@@ -299,10 +299,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Segment:
-    """One segment of an evacuation route; widths in m.
-
-    `room` names the rooms that it runs through, split by ;: walls keep pieces of others away. Blank: not known.
-    """
+    """One segment of an evacuation route; widths in m; `room` names the rooms that it runs through, split by ;."""
 
     row: int
     route: str

@@ -88,9 +88,9 @@ class Progress:
         """Return what `work` returns; raise `CancelledError` at once if it is to stop, whatever it is doing.
 
         For stretches that cannot be split, such as a compilation, an import or a library's own loop. They are worked on
-        in a thread, in the language in use, and go on there after a cancel, with nobody to wait for them. So `work` may
-        only compute: it writes no file, and changes nothing that others see. It had better check as well, so that it
-        ends soon: the process waits for it when it ends. Without an event to cancel by, `work` is just called.
+        in a thread, in the language in use, and go on there after a cancel, which the process waits for when it ends.
+        So `work` only computes: it writes no file, and changes nothing that others see. Without an event to cancel by,
+        it is just called.
         """
         if not self._can_stop:
             return work()

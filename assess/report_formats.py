@@ -57,10 +57,9 @@ class Job:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Format:
-    """A format of reports.
+    """A format of reports; a PDF's `edition` is begun before all others and written last, as it carries results.json.
 
-    * `edition`: of a PDF, which is begun before all others and written last, as it carries results.json.
-    * `needs`: packages beyond those of every report, by the modules that they bring, and `extra` which brings them.
+    `needs` are packages beyond those of every report, by the modules that they bring, and `extra` brings them.
     """
 
     key: str

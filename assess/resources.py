@@ -88,10 +88,7 @@ def web_fonts() -> dict[tuple[str, str], Path]:
 
 
 def open_input(path: Path) -> io.BufferedReader:
-    """Open a file to read its bytes; OSError if it cannot be opened, or is a pipe, a device or a socket.
-
-    A pipe would be waited for without end, and a device may never end.
-    """
+    """Open a file to read its bytes; OSError if it is a pipe or a device, which may never end, or cannot be opened."""
     mode = path.stat().st_mode
     if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
         raise OSError(errno.EINVAL, fill("it is a pipe or a device, not a file"), str(path))

@@ -50,8 +50,7 @@ def plain_line(text: str) -> str:
 def natural_key(name: str) -> tuple[tuple[tuple[int, str], ...], str]:
     """Return what names are sorted by: a whole number within a name counts by its value, capitals do not count.
 
-    Of equal numbers the one with fewer digits comes first: 25-7 before 25-07. Names that differ in capitals alone keep
-    one order as well, so that no order depends on that of the input.
+    Of equal numbers the one with fewer digits comes first: 25-7 before 25-07. No order depends on that of the input.
     """
     plain = unicodedata.normalize("NFKC", name).casefold().strip()
     parts = _NUMBER.split(plain)

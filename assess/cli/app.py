@@ -46,7 +46,7 @@ assess COMMAND --help shows the options of a command, with examples.
 
 
 def main() -> None:
-    """Run the command line: only the module of the command that is named is imported, where one is.
+    """Run the command line, importing only the module of the command that is named, where one is.
 
     A shell that asks for completions names the command in its own way. Whatever the output does, there is one line and
     an exit status, and no traceback. A blank word is refused: as a path it would mean the folder that one is in.

@@ -70,9 +70,9 @@ def write_new_workbook(
 ) -> None:
     """Write a workbook to fill in; it appears whole or not at all.
 
-    `use` is one of `assess.workbook.schema.USES`, for its types of furniture alone and an example room; `example` fills
-    in what can be run. Raises InputError if the name does not end in .xlsx; OutputError if the file cannot be written,
-    or exists and is not to be replaced.
+    `use` is one of `schema.USES`, for its types of furniture alone and an example room; `example` fills in what can be
+    run. Raises InputError if the name does not end in .xlsx; OutputError if the file cannot be written, or is not to be
+    replaced.
     """
     if path.suffix.lower() != ".xlsx":
         raise InputError(f"{path} does not end in .xlsx: name it {path.stem or 'inventory'}.xlsx.")

@@ -69,8 +69,7 @@ def say_written(files: Iterable[Path], removed: Iterable[Path] = ()) -> None:
 def guard(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command that turns each error of the library into a message and an exit status.
 
-    A message of the library that begins with a keyword argument is printed with the option of that name in its place:
-    "runs is 0, expected ..." becomes "--runs is 0, expected ...".
+    A message that begins with a keyword argument is printed with its option: "runs is 0, ..." as "--runs is 0, ...".
     """
 
     @wraps(command)
@@ -184,9 +183,8 @@ def show_progress() -> Iterator[Progress]:
     """Show how far the work is on standard error, and have Ctrl-C or SIGTERM cancel it.
 
     On a terminal one line keeps changing. Elsewhere nothing is printed in the first `QUIET` seconds; then each stage
-    gets a line when it begins, and one every `REPEAT` seconds, also while nothing is reported: during an import, a
-    compilation or the layout of a PDF. Work that does not stop `interrupts.PATIENCE` after it is cancelled gets a
-    KeyboardInterrupt.
+    gets a line when it begins, and one every `REPEAT` seconds. Work that does not stop in `interrupts.PATIENCE` after
+    it is cancelled gets a KeyboardInterrupt.
     """
     cancel, done, line = threading.Event(), threading.Event(), _Line(sys.stderr)
 
@@ -272,10 +270,9 @@ def describe_progress(report: Report) -> str:
 
 
 def open_file(path: Path) -> str:
-    """Open a file with the default browser, which hands a kind that it does not show to its viewer.
+    """Open a file with the default browser, or the program that ``BROWSER`` names.
 
-    The environment variable ``BROWSER`` names another program, as `webbrowser` has it. Returns "" where a program was
-    started; else one line that says where the file is.
+    Returns "" where a program was started; else one line that says where the file is.
     """
     if open_address(path.resolve().as_uri()):
         return ""

@@ -56,7 +56,7 @@ def start() -> None:
 def end(remains: str = "") -> None:
     """End the process at once; return only if files are being moved into place at this moment.
 
-    `remains` says what is kept of the work. Threads that are still integrating are not waited for.
+    `remains` says what is kept of the work.
     """
     traces = sys.modules.get("assess.delivery.folders")
     if traces is not None and not traces.may_end():

@@ -286,10 +286,7 @@ def write_files(files: Mapping[Path, bytes], plot: Path | None, draw: Draw, what
 
 
 def check_size(option: str, value: float, name: str = "") -> None:
-    """Raise InputError unless a value lies within the limits of a column of Items, in the unit of that column.
-
-    `name` is the column's field, by default that of the option.
-    """
+    """Raise InputError unless a value lies within the limits of a column of Items (`name`, by default the option)."""
     from assess.workbook.schema import ITEMS
 
     column = ITEMS.column(name or option)

@@ -39,8 +39,8 @@ BOX = {"facecolor": "white", "edgecolor": "none", "pad": 1, "alpha": 0.85}
 class Case:
     """What `assess rock` was asked for: sizes in m, the height of the centre of gravity as a share of the height.
 
-    A restitution of NaN is Housner's. `channel` is the record as in its file and as treated by `baseline`, `motion`
-    that times `factor`, which is 1 where no peak was asked for, and `pfa_g` its peak [g].
+    A restitution of NaN is Housner's. `channel` is the record as treated by `baseline`, `motion` that times `factor`,
+    and `pfa_g` its peak [g].
     """
 
     breadth: float
@@ -102,10 +102,7 @@ def read_case(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
-    """What the block does, with the vertical motion where one was given, and what else was asked for.
-
-    `document` and `lines` are what is added to the document and to the text for that.
-    """
+    """What the block does, with the vertical motion where given, and what else was asked for, as data and lines."""
 
     response: Response
     document: dict[str, Any] = field(default_factory=dict)
@@ -167,7 +164,7 @@ def evaluate(case: Case, *, wall: bool = False, vertical: str | None = None, fri
 def read_vertical(name: str, case: Case) -> tuple[str, FloatArray]:
     """Return the name of a vertical channel and its samples [m/s2] at the times of the horizontal one, scaled alike.
 
-    Both are taken to begin at the same instant. Raises InputError where there is not one such channel of that length.
+    Both are taken to begin at the same instant. InputError where there is not one such channel of that length.
     """
     channels = read_channels(name)
     upright = [channel for channel in channels if channel.record.vertical]
