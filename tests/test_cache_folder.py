@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from assess.cache_folder import cache_folder, choose_folder, examine_folder
+from assess.compiled import cache_folder, choose_folder, examine_folder
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "getuid"), reason="access rights of Windows are others")
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import assess
-from assess.cache_folder import cache_folder
+from assess.compiled import cache_folder
 from tests.shaking import write_records
 from tests.workbooks import write
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import typer
 
 from assess import resources
-from assess.cache_folder import choose_folder
 from assess.cli.console import say
+from assess.compiled import choose_folder
 from assess.environment import say_install
 from assess.errors import PdfUnavailableError
 from assess.version import __version__

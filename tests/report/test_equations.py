@@ -5,7 +5,7 @@ import unicodedata
 
 import pytest
 
-from assess.cache_folder import examine_folder
+from assess.compiled import examine_folder
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.methods import all_methods
 from assess.motion.scenario import PROFILES

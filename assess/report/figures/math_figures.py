@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass
 from functools import cache
 from typing import Any
 
-from assess.cache_folder import cache_folder, examine_folder
+from assess.compiled import cache_folder, examine_folder
 from assess.progress import SILENT
 from assess.report.figures.draw import one_at_a_time
 
