@@ -93,7 +93,7 @@ class Piece:
     * `bottom`: height of its lowest point above the floor of its room, or of its storey [m].
     * `is_fitted`: whether its name tells of kitchen or fitted furniture, which is usually fixed.
     * `support_reach`: least distance from the middle of its plan to an edge of its base, the convex hull of its points
-      at the floor [m]: 0 where the middle lies beside the base, None where the shape of the base is not known.
+      at the floor [m]: 0 where the middle lies outside it, None where the shape of the base is not known.
     * `support_angle_deg`, `support_across`: direction to that edge, and extent of its plan across that direction [m].
 
     `space` and `type` are "" where it has none; angles lie in [-90, 90).

@@ -67,10 +67,9 @@ _Found = TypeVar("_Found")
 
 
 def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> ImportedBuilding:
-    """Read the furniture of a COBie file, which messages and the Catalogue call `name`.
-
-    Raises WorkbookError if it is no COBie file, is damaged or larger than the limits of `assess.workbook.open`, lacks a
-    sheet or a column, names no unit of length, or one in which no size of its furniture can be.
+    """Read the furniture of a COBie file, which messages and the Catalogue call `name`. Raises WorkbookError if it is
+    not one, is damaged or larger than the limits of `assess.workbook.open`, lacks a sheet or a column, names no unit of
+    length, or one in which no size of its furniture can be.
     """
     sheets = _read_sheets(source, name, progress)
     facility = sheets["Facility"]
@@ -79,10 +78,10 @@ def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> 
     floors = _by_name(sheets["Floor"], partial(_read_floor, sheets["Floor"], unit, faults))
     origin = fill("COBie file {name}, sheet Type: nominal sizes", name=name)
     types = _by_name(sheets["Type"], lambda kind, _, row: _read_type(kind, row, unit, origin))
-    spaces = _by_name(sheets["Space"], lambda room, _, row: (room, floors.get(key(say(row.get("FloorName"))))))
+    spaces = _by_name(sheets["Space"], lambda room, _, row: (room, floors.get(key(cell_text(row.get("FloorName"))))))
     items, used, skipped, in_several = list[dict[str, Any]](), dict[str, dict[str, Any]](), list[Left](), 0
     for _, row in sheets["Component"].rows:
-        named, space = say(row.get("TypeName")), say(row.get("Space"))
+        named, space = cell_text(row.get("TypeName")), cell_text(row.get("Space"))
         kind = types.get(key(named))
         if kind is None:
             skipped.append((named or "-", fill("not in the sheet Type") if named else fill("TypeName is blank"), True))
@@ -101,16 +100,16 @@ def read_cobie(source: Path | bytes, name: str, progress: Progress = SILENT) -> 
                 reason = fill("its Space is not in the sheet Space, or that has no floor of the sheet Floor")
             skipped.append((kind["type"], reason, True))
             continue
-        own = say(row.get("ExtIdentifier")) or say(row.get("ExternalIdentifier"))
-        item = say(row.get("Name")) or own or kind["type"]
+        own = cell_text(row.get("ExtIdentifier")) or cell_text(row.get("ExternalIdentifier"))
+        item = cell_text(row.get("Name")) or own or kind["type"]
         sizes = {size: kind[size] for size in ("type", "breadth", "width", "height")}
         used[kind["type"]] = kind
         items.append({"item": item, "floor": floor.name, "room": room, "description": kind["type"], **sizes,
                       "source_id": own or item})  # fmt: skip
     rows, height, doubts = _list_floors(floors, {row["floor"] for row in items})
     own_row = facility.rows[0][1] if facility.rows else {}
-    building = {"building": say(own_row.get("Name")), "address": say(own_row.get("SiteName")),
-                "use": _CODE.sub("", say(own_row.get("Category")))}  # fmt: skip
+    building = {"building": cell_text(own_row.get("Name")), "address": cell_text(own_row.get("SiteName")),
+                "use": _CODE.sub("", cell_text(own_row.get("Category")))}  # fmt: skip
     names = name_apart(row["item"] for row in items)
     return ImportedBuilding(
         source=name,
@@ -192,7 +191,7 @@ def _read_sheet(book: Book, sheet: str, own: str) -> _Sheet:
             raise WorkbookError([Problem("error", own, f"A{MAX_ROWS + 1}", message, fill("Split the file by floors."))])
         if columns:
             typed = {columns[at]: value for at, value in cells.items() if at in columns and not is_blank(value)}
-            texts = {column: say(value).casefold() for column, value in typed.items()}
+            texts = {column: cell_text(value).casefold() for column, value in typed.items()}
             is_header = all(plain(text) == plain(column) for column, text in texts.items())
             if not is_header and not set(texts.values()) <= (_TEMPLATE | _NOT_GIVEN):
                 given = {column: typed[column] for column, text in texts.items() if text not in _NOT_GIVEN}
@@ -218,7 +217,7 @@ def _read_sheet(book: Book, sheet: str, own: str) -> _Sheet:
     return _Sheet(own, {column: column_letters(at) for at, column in columns.items()}, tuple(rows))
 
 
-def say(value: object) -> str:
+def cell_text(value: object) -> str:
     """Return a cell as a text; "" for one that is blank, an error or a formula without a saved value."""
     text = "" if value is None or value is UNSAVED else read_text(value)
     return "" if text in ERRORS else " ".join(text.split())
@@ -228,7 +227,7 @@ def _by_name(sheet: _Sheet, read: Callable[[str, int, Row], _Found]) -> dict[str
     """Return what is read of the rows of a sheet, by their names as names are compared; of two alike the first."""
     found: dict[str, _Found] = {}
     for number, row in sheet.rows:
-        name = say(row.get("Name"))
+        name = cell_text(row.get("Name"))
         if name and key(name) not in found:
             found[key(name)] = read(name, number, row)
     return found
@@ -254,7 +253,7 @@ def _read_floor(sheet: _Sheet, unit: str, faults: list[Text], name: str, number:
         faults.append(fill("{cell}: {message} It was left blank.", cell=cell, message=error.message))
     with suppress(CellError):  # only the height of the building rests on it, and that may stay blank
         height = _read_length(BUILDING.column("height"), "Height", row.get("Height"), unit)
-    return _Floor(name, say(row.get("Description")), say(row.get("Category")).casefold(), elevation, height)
+    return _Floor(name, cell_text(row.get("Description")), cell_text(row.get("Category")).casefold(), elevation, height)
 
 
 def _list_floors(
@@ -290,7 +289,7 @@ def _find_unit(facility: _Sheet, types: _Sheet) -> str:
     size of the furniture is in range while most are in another.
     """
     line, row = facility.rows[0] if facility.rows else (2, {})
-    typed, cell = say(row.get("LinearUnits")), f"{facility.letters['LinearUnits']}{line}"
+    typed, cell = cell_text(row.get("LinearUnits")), f"{facility.letters['LinearUnits']}{line}"
     unit = next((unit for text in (typed, f"{typed}s") if (unit := read_unit(text)) in LENGTH), None)
     if unit is None:
         message = fill("LinearUnits is blank, so that no size can be read.")
@@ -299,9 +298,9 @@ def _find_unit(facility: _Sheet, types: _Sheet) -> str:
         fix = fill("Write the unit of NominalHeight: millimeters, centimeters, meters, inches or feet.")
         raise WorkbookError([Problem("error", facility.name, cell, message, fix)])
     sizes = [
-        (say(row.get("Name")), column, number)
+        (cell_text(row.get("Name")), column, number)
         for _, row in types.rows
-        if say(row.get("AssetType")).casefold() in MOVEABLE
+        if cell_text(row.get("AssetType")).casefold() in MOVEABLE
         for column in SIZES
         if (number := _read_number(row.get(column)))
     ]
@@ -320,7 +319,7 @@ def _find_unit(facility: _Sheet, types: _Sheet) -> str:
 
 
 def _read_type(name: str, row: Row, unit: str, origin: Text) -> dict[str, Any] | Left:
-    asset = say(row.get("AssetType"))
+    asset = cell_text(row.get("AssetType"))
     if asset.casefold() in FIXED:
         return name, fill("AssetType is Fixed"), False
     if asset.casefold() not in MOVEABLE:

@@ -33,7 +33,7 @@ THINNEST = 0.1  # a wall is taken to be at least so thick [m]
 THICKEST = 1.5  # so far from the centre of a door the face of its wall is looked for [m]
 REACH = 0.02  # how far a space may be from the point at which it is looked for [m]
 BASEMENT = -1.0  # a storey whose floor is lower than this above the building's zero is a basement [m]
-LOW = 0.1  # a piece that is no higher than this is stepped over [m]
+LOW = 0.1  # a piece up to this high is stepped over [m]
 JAMB = 0.1  # what is kept free from either edge of a passage [m]
 NARROWEST = 0.2  # least half width of a passage in which ways may run [m]
 FAR = 2.0  # a stair end is joined to rooms up to this far away [m]
@@ -84,7 +84,7 @@ def find_sides(model: BuildingModel) -> dict[str, Sides]:
 
 
 def find_ground(model: BuildingModel) -> Storey | None:
-    """Return the lowest storey with spaces and doors that is no basement, else the highest; None if there is none."""
+    """Return the lowest storey with spaces and doors that is not a basement, else the highest; None if none has them."""
     with_spaces, with_doors = ({one.storey for one in some} for some in (model.spaces, model.doors))
     storeys = [one for one in model.storeys if one.key in with_spaces & with_doors]
     above = [one for one in storeys if one.elevation >= BASEMENT]

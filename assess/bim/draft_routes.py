@@ -1,7 +1,7 @@
 """Evacuation routes drafted from a building model: from every room to an exit, one route for each exit and stair.
 
-A draft is no finding: the model does not tell whether a door is locked, or whether people may pass through a room. So
-the names of drafted routes end in "(draft)" until a person has walked them (`assess.workbook.draft_names`).
+A draft is not a finding: the model does not tell whether a door is locked, or people may pass through a room. So the
+names of drafted routes end in "(draft)" until a person has walked them (`assess.workbook.draft_names`).
 
 A route is the union of the ways of all rooms that leave their storey by one exit or one end of a stair, each segment
 once. The route to a stair ends with the flight, at whose other end the route of that storey goes on.
@@ -46,16 +46,16 @@ Rows = Sequence[Mapping[str, Any]]
 
 IN_ROOM = 0.3  # a segment runs through a room if it is longer than this there [m]
 FALLS_OVER = 3.0
-"""A piece of the next room may fall through an opening that is no farther from a segment than this [m]."""
+"""A piece of the next room may fall through an opening up to this far from a segment [m]."""
 BEHIND_WALL = 1.0
 """A piece of the next room that is so near to a segment, but behind a wall, would seem to stand in it [m]."""
 MOST_NAMED = 10
 SHORT = 40  # characters that are kept of a long name which a number tells apart
 NARROWEST = ROUTES.column("clear_width").low or 0.0  # least clear width that a workbook takes [m]
 BESIDE = 1.5  # walls and columns up to this far to the left and to the right of a segment bound it [m]
-SLIVER = 1e-4  # area below which what stands beside a segment is an error of rounding [m2]
+SLIVER = 1e-4  # area below which what stands next to a segment is an error of rounding [m2]
 SHORTEST = 0.02  # a part of a segment that is shorter than this has no sides [m]
-AT_STAIR = 0.5  # around a stair, and so far beside it, no width is measured: ways lead to it from any side [m]
+AT_STAIR = 0.5  # around a stair, and so far from it, no width is measured: ways lead to it from any side [m]
 PER_RISE = 2.5  # length of the way on a stair to each metre that it rises [-]
 
 

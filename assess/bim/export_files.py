@@ -20,12 +20,12 @@ from assess.bim.export_results import (
     ExportPiece,
     ExportRun,
     describe,
+    describe_class,
+    describe_report,
+    describe_scenario,
     list_items,
     list_routes,
-    say_class,
-    say_program,
-    say_report,
-    say_scenario,
+    name_program,
 )
 from assess.bim.export_topics import Pair, Topics, list_entries, write_topics
 from assess.bim.ifc_model import check_installed, check_model, unreadable
@@ -167,7 +167,7 @@ def add_properties(data: bytes, name: str, part: ModelPart, found: ExportRun, pi
 def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, str]]:
     """Yield the names, alike in every language, and values as STEP text; the class is in the words of the report."""
     run, chance, inputs = found.run, one.chance, one.inputs
-    yield "RiskClass", write_label(say_class(run, one, one.upper, is_short=True))
+    yield "RiskClass", write_label(describe_class(run, one, one.upper, is_short=True))
     if one.upper != one.risk:
         yield "ClassUpper", write_label(words.risk_word(one.upper))
     yield "Probability", write_real(chance.probability)
@@ -198,9 +198,9 @@ def _list_properties(found: ExportRun, one: ExportPiece) -> Iterator[tuple[str, 
             "FixingTensionCode": work.tension_code_kn, "BaseShear": work.shear_kn,
         }  # fmt: skip
         yield from ((f"{key}_kN", write_real(force)) for key, force in forces.items() if force is not None)
-    yield "Scenario", f"IFCTEXT({write_text(say_scenario(run))})"
-    yield "AssessedBy", write_label(say_program(run))
-    yield "Report", f"IFCTEXT({write_text(say_report(run))})"
+    yield "Scenario", f"IFCTEXT({write_text(describe_scenario(run))})"
+    yield "AssessedBy", write_label(name_program(run))
+    yield "Report", f"IFCTEXT({write_text(describe_report(run))})"
 
 
 def make_global_id(kind: str, *keys: str) -> str:

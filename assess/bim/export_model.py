@@ -50,7 +50,7 @@ class ModelDoor:
 
 @dataclass(frozen=True, slots=True)
 class ModelPart:
-    """What was found of a model; `refused` are the classes, by GlobalId, of what was sought but is no furniture."""
+    """What was found of a model; `refused` are the classes, by GlobalId, of what was sought but is not furniture."""
 
     project: str
     last_number: int
@@ -69,7 +69,7 @@ def read_elements(path: Path, name: str, keys: Sequence[str], placed: Sequence[s
 
     `keys`: GlobalIds; those that nothing in the model has are left out of what is returned.
     `placed`: those of which the place is needed, and with them the doors; None where no place is.
-    Raises ModelError if it is no whole building model, or names no unit of length and places are needed.
+    Raises ModelError if it is not a whole building model, or names no unit of length and places are needed.
     """
 
     def understand(model: Any) -> ModelPart:

@@ -189,13 +189,13 @@ def _read_entry(row: Part, known: Mapping[str, int]) -> ScheduleRow:
 # ---------------------------------------------------------------- in words
 
 
-def say_risk(run: PastRun, pieces: Sequence[ExportPiece]) -> str:
+def describe_risk(run: PastRun, pieces: Sequence[ExportPiece]) -> str:
     """Return the highest class of some pieces in words, with what any of them could be, and why it is no lower."""
     highest = max(pieces, key=lambda one: one.risk)
-    return say_class(run, highest, max(one.upper for one in pieces), is_short=False)
+    return describe_class(run, highest, max(one.upper for one in pieces), is_short=False)
 
 
-def say_class(run: PastRun, one: ExportPiece, upper: RiskClass, *, is_short: bool) -> str:
+def describe_class(run: PastRun, one: ExportPiece, upper: RiskClass, *, is_short: bool) -> str:
     """Return the class of a piece in words, with what it could be; of one outside the classes, on what it rests."""
     apart = "" if one.basis in (run.main_basis, CANNOT_ROCK) else one.basis
     is_by_faster = one.basis == UNCONFIRMED and one.has_simulated  # nothing is known of the building
@@ -218,7 +218,7 @@ def list_routes(found: ExportRun, items: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(one.route for one in found.segments if one.items & wanted))
 
 
-def say_scenario(run: PastRun) -> str:
+def describe_scenario(run: PastRun) -> str:
     """Return the earthquake in words, and where the floor motion comes from."""
     building, settings = run.building, run.settings
     kind = str(settings.get("scenario") or building.get("scenario_kind") or "")
@@ -237,7 +237,7 @@ def say_scenario(run: PastRun) -> str:
     return "; ".join(dict.fromkeys(part for part in parts if part)) or _("floor motions of the workbook")
 
 
-def say_report(run: PastRun) -> str:
+def describe_report(run: PastRun) -> str:
     """Return what names the report: building, revision, date, and the hash of its results."""
     building = run.building
     parts = [run.name, run.workbook]
@@ -247,15 +247,15 @@ def say_report(run: PastRun) -> str:
     return ", ".join(part for part in parts if part)
 
 
-def say_program(run: PastRun) -> str:
+def name_program(run: PastRun) -> str:
     """Return the program that assessed it, with its version."""
     return f"assess {run.version}"
 
 
-def say_title(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> str:
+def write_title(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> str:
     """Return the title of the topic of an entry: class, pieces, and why they are to be fixed."""
     routes = list_routes(found, list_items(entry))
-    values = {"risk": say_risk(found.run, pieces), "names": _name_with_kind(entry, pieces)}
+    values = {"risk": describe_risk(found.run, pieces), "names": _name_with_kind(entry, pieces)}
     if routes:
         text = ngettext(
             "{risk}: {names} may overturn and block route {routes}",
@@ -275,7 +275,7 @@ def _name_with_kind(entry: ScheduleRow, pieces: Sequence[ExportPiece]) -> str:
 
 
 def list_importance(pieces: Sequence[ExportPiece]) -> list[str]:
-    """Return what is told of the importance of some pieces, each once."""
+    """Return the importance of some pieces, each once."""
     return list(dict.fromkeys(one.importance for one in pieces if one.importance))
 
 
@@ -284,7 +284,7 @@ def list_lines(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiec
     run = found.run
     where = _("Floor {floor}, room {room}.", floor=entry.floor, room=entry.room or words.DASH)
     yield f"{_name_with_kind(entry, pieces)}: {words.plural(entry.pieces, 'piece')}. {where}"
-    yield _("Risk of overturning: {risk}.", risk=say_risk(run, pieces))
+    yield _("Risk of overturning: {risk}.", risk=describe_risk(run, pieces))
     are_alike = len(set(map(describe, pieces))) == 1
     for one in pieces[:MOST_CHANCES]:
         item, kind, pfa, chance = one.item, describe(one), one.inputs.get("pfa_g"), one.chance
@@ -294,7 +294,7 @@ def list_lines(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiec
                 pfa=words.in_g(float(pfa)) if isinstance(pfa, int | float) else words.DASH,
                 source=one.pfa_source or words.DASH)  # fmt: skip
     yield _("Earthquake: {scenario}. The chance is for this earthquake, not per year.",
-            scenario=say_scenario(run))  # fmt: skip
+            scenario=describe_scenario(run))  # fmt: skip
     # its importance, its routes, and the effect of fixing it on them
     steps: dict[str, list[RouteStep]] = {}
     for step in sorted(found.steps, key=lambda step: (step.route, step.place)):
@@ -318,7 +318,7 @@ def list_lines(found: ExportRun, entry: ScheduleRow, pieces: Sequence[ExportPiec
         yield _("Known against it: {weakness} ({source}).", weakness=_(known.weakness), source=_(known.source))
     yield _(CHECKS)
     yield _("Entry {place:,} of {n:,} of the schedule. {report}; {program}.", place=entry.place,
-            n=len(found.entries), report=say_report(run), program=say_program(run))  # fmt: skip
+            n=len(found.entries), report=describe_report(run), program=name_program(run))  # fmt: skip
 
 
 def _list_work(work: WorkRow, *, is_only: bool) -> Iterator[str]:

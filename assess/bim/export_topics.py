@@ -40,8 +40,8 @@ from assess.bim.export_results import (
     list_items,
     list_lines,
     list_routes,
-    say_program,
-    say_title,
+    name_program,
+    write_title,
 )
 from assess.bim.plan_shapes import FloatArray, direction_of
 from assess.compare.past_run import UNCONFIRMED, PastRun
@@ -160,7 +160,7 @@ def _add_topic(
     run = found.run
     risk, upper = max(one.risk for one in pieces), max(one.upper for one in pieces)
     topic = _add(markup, "Topic", Guid=guid, TopicType="Issue", TopicStatus="Open")
-    _add(topic, "Title", say_title(found, entry, pieces))
+    _add(topic, "Title", write_title(found, entry, pieces))
     _add(topic, "Priority", PRIORITIES[upper])
     _add(topic, "Index", str(entry.place))
     # by labels programs group topics
@@ -172,7 +172,7 @@ def _add_topic(
     for label in (*labels, *map(_, list_importance(pieces))):
         _add(topic, "Labels", label)
     _add(topic, "CreationDate", find_date(run).strftime("%Y-%m-%dT%H:%M:%SZ"))
-    _add(topic, "CreationAuthor", str(run.building.get("prepared_by") or "") or say_program(run))
+    _add(topic, "CreationAuthor", str(run.building.get("prepared_by") or "") or name_program(run))
     lines = [
         *list_lines(found, entry, pieces),
         *(_("Also selected: door {name} ({key}), on the route that may be blocked.", name=door.name, key=door.key)

@@ -1,7 +1,7 @@
 """A building model in IFC (ISO 16739-1: IFC2X3, IFC4, IFC4X3) as plain data: its furniture, rooms, doors and stairs.
 
 Shapes are trusted, names and properties are not: sizes are those of the shapes, exits are found by the rooms on both
-sides of a door, whatever its IsExternal says.
+sides of a door, not by its IsExternal.
 
 The library takes a file that breaks off as if it were whole, with the elements up to there. So the end is looked for
 first. STEP physical files: ISO 10303-21, of which a first line, a header and a last line are required.
@@ -111,7 +111,7 @@ def is_model(start: bytes) -> bool:
 
 
 def check_model(path: Path, name: str) -> None:
-    """Raise unless a file is a whole STEP file of a known schema, as far as can be told without reading all of it.
+    """Raise unless a file is a whole STEP file of a known schema, as far as its beginning and its end show.
 
     Raises ModelError if it cannot be opened, is empty, too large, packed, XML, no model, cut off, or of another schema.
     """
@@ -140,7 +140,7 @@ def check_model(path: Path, name: str) -> None:
     elif LAST not in end:
         why = fill("it is cut off: its last line, {last}, is missing. Copy or export it again", last=LAST.decode())
     elif not schema.upper().startswith(SCHEMAS):
-        why = _say_schema(schema)
+        why = _describe_schema(schema)
     if why is not None:
         raise unreadable(name, why)
 
@@ -151,7 +151,7 @@ def unreadable(name: str, why: OSError | Text) -> ModelError:
     return ModelError(fill("{name} cannot be read: {why}.", name=name, why=reason))
 
 
-def _say_schema(schema: str) -> Text:
+def _describe_schema(schema: str) -> Text:
     known = ", ".join(SCHEMAS)
     return fill("its schema is {schema}, expected one of: {known}. Export it as IFC4", schema=schema, known=known)
 
@@ -178,7 +178,7 @@ def read_with(path: Path, name: str, understand: Callable[[Any], _Found]) -> _Fo
     except (ifcopenshell.Error, RuntimeError, ValueError, OSError) as error:
         if "unsupported schema" in str(error).lower():
             schema = str(error).strip().split()[-1]
-            raise unreadable(name, _say_schema(schema)) from None
+            raise unreadable(name, _describe_schema(schema)) from None
         raise _find_damage(name, error) from None
     if not isinstance(model, ifcopenshell.file):
         raise unreadable(name, _NO_MODEL)
@@ -226,7 +226,7 @@ def find_unit(model: Any, name: str) -> float:
     return scale
 
 
-def say(value: object) -> str:
+def clean_text(value: object) -> str:
     """Return a text of the model in one line, read as cells are; "" for what programs write in place of a text."""
     text = " ".join(read_text(value).split())[:LONGEST] if value is not None else ""
     return "" if text.casefold().startswith(_PLACEHOLDERS) or text in ERRORS else text
@@ -252,7 +252,7 @@ def list_outer(elements: Sequence[Element]) -> list[Element]:
 
 
 def find_whole(element: Element) -> Element | None:
-    """Return the outermost element that an element is a part of; None where it is no part."""
+    """Return the outermost element that an element is a part of; None where it is not one."""
     from ifcopenshell.util.element import get_aggregate
 
     whole, one = None, element
@@ -301,7 +301,7 @@ def find_key(element: Element) -> str:
     return element.GlobalId or f"#{element.id()}"
 
 
-def tell_apart(elements: Iterable[Element]) -> dict[int, str]:
+def make_keys(elements: Iterable[Element]) -> dict[int, str]:
     """Return the key of each element by its number in the file; the second with a GlobalId gets its number added."""
     found: dict[int, str] = {}
     taken: set[str] = set()
@@ -451,11 +451,14 @@ def _understand(model: Any, name: str, also: Sequence[str]) -> BuildingModel:
 def _describe_site(model: Any) -> dict[str, Any]:
     """Return name, address, latitude, longitude and the compass direction of X [deg], as far as they are given."""
     buildings, projects = model.by_type("IfcBuilding"), model.by_type("IfcProject")
-    named = [say(one.LongName) or say(one.Name) for one in (*buildings, *projects)]
+    named = [clean_text(one.LongName) or clean_text(one.Name) for one in (*buildings, *projects)]
     address = next((one.BuildingAddress for one in buildings if one.BuildingAddress), None)
     lines = [*(address.AddressLines or ())] if address is not None else []
     lines += [getattr(address, name, None) for name in ("PostalCode", "Town", "Region", "Country")]
-    found: dict[str, Any] = {"name": next(filter(None, named), ""), "address": ", ".join(filter(None, map(say, lines)))}
+    found: dict[str, Any] = {
+        "name": next(filter(None, named), ""),
+        "address": ", ".join(filter(None, map(clean_text, lines))),
+    }
     for site in model.by_type("IfcSite"):
         latitude, longitude = (
             round(sum(part / size for part, size in zip(angle, _ARC, strict=False)), 6)
@@ -485,11 +488,11 @@ def _list_storeys(model: Any, unit: float) -> tuple[list[Storey], list[Text]]:
     from ifcopenshell.util.placement import get_storey_elevation
 
     storeys, found = model.by_type("IfcBuildingStorey"), []
-    keys = tell_apart(storeys)
+    keys = make_keys(storeys)
     for number, one in enumerate(storeys, 1):
         own = None if one.Elevation is None else float(one.Elevation) * unit
         level = float(get_storey_elevation(one)) * unit if one.ObjectPlacement is not None else own or 0.0
-        name = say(one.Name) or say(one.LongName) or str(number)
+        name = clean_text(one.Name) or clean_text(one.LongName) or str(number)
         if math.isfinite(level) and (own is None or math.isfinite(own)):
             found.append((Storey(keys[one.id()], name, level, level), own))
     levels = {round(storey.level, 2) for storey, _ in found}
@@ -509,12 +512,12 @@ def _list_storeys(model: Any, unit: float) -> tuple[list[Storey], list[Text]]:
 
 def _list_spaces(model: Any, storeys: Collection[str]) -> Iterator[Space]:
     spaces = {one.id(): one for one in model.by_type("IfcSpace")}
-    keys = tell_apart(spaces.values())
+    keys = make_keys(spaces.values())
     shapes = dict(list_shapes(model, list(spaces.values())))
     for number, one in spaces.items():
         storey, shape = _find_known(one, storeys), shapes.get(number)
         if shape is not None and storey is not None and (area := find_base(shape)) is not None:
-            name, title = say(one.Name), say(one.LongName)
+            name, title = clean_text(one.Name), clean_text(one.LongName)
             title = "" if title == name else title
             yield Space(keys[number], storey, name or title, title, area, shape.bottom, shape.top)
 
@@ -529,7 +532,7 @@ def _find_known(element: Element, storeys: Collection[str]) -> str | None:
 def _list_doors(model: Any, storeys: Collection[str], unit: float) -> Iterator[Door]:
     """Yield the doors that have a plan: that of their opening, else their own."""
     doors = model.by_type("IfcDoor")
-    keys = tell_apart(doors)
+    keys = make_keys(doors)
     fills = ((one.id(), fill.RelatingOpeningElement) for one in doors for fill in one.FillsVoids)
     openings = {number: opening for number, opening in fills if opening is not None}
     shapes = dict(list_shapes(model, [*doors, *openings.values()]))
@@ -548,16 +551,16 @@ def _list_doors(model: Any, storeys: Collection[str], unit: float) -> Iterator[D
             continue
         overall = float(one.OverallWidth or 0.0) * unit
         yield Door(
-            keys[one.id()], storey, say(one.Name), plan.x, plan.y, plan.angle_deg, plan.long, plan.short,
+            keys[one.id()], storey, clean_text(one.Name), plan.x, plan.y, plan.angle_deg, plan.long, plan.short,
             overall if math.isfinite(overall) and overall > 0 else 0.0,
         )  # fmt: skip
 
 
 def _list_stairs(model: Any, storeys: Sequence[Storey]) -> Iterator[Stair]:
     stairs = {one.id(): one for one in list_outer(list_elements(model, STAIRS))}
-    keys = tell_apart(stairs.values())
+    keys = make_keys(stairs.values())
     for number, shape in sorted(join_parts(model, list(stairs.values())), key=lambda one: one[0]):
-        key, name, low, high = keys[number], say(stairs[number].Name), shape.bottom, shape.top
+        key, name, low, high = keys[number], clean_text(stairs[number].Name), shape.bottom, shape.top
         feet = [one for one in storeys if abs(one.level - low) < AT_FOOT]
         heads = [one for one in storeys if low + LEAST_RISE < one.level < high + ABOVE_HEAD]
         if feet:
@@ -630,7 +633,7 @@ class _Shaped:
     def __init__(
         self, model: Any, elements: Mapping[int, Element], storeys: Sequence[Storey], spaces: Sequence[Space]
     ) -> None:
-        self.elements, self.keys = elements, tell_apart(elements.values())
+        self.elements, self.keys = elements, make_keys(elements.values())
         self.storeys = {one.key: one for one in storeys}
         self.pieces: dict[int, Piece] = {}
         self.bounds: dict[int, FloatArray] = {}
@@ -660,7 +663,7 @@ class _Shaped:
         kind = name or _name_type(element)
         self.pieces[number] = Piece(
             key=self.keys[number], storey=storey, space=space.key if space is not None else "",
-            ifc_class=element.is_a(), name=name or say(element.Name), type=kind, bottom=bottom - floor,
+            ifc_class=element.is_a(), name=name or clean_text(element.Name), type=kind, bottom=bottom - floor,
             is_fitted=any(word in kind.casefold() for word in FITTED), **asdict(box),
         )  # fmt: skip
         self.bounds[number] = np.concatenate([shape.points.min(axis=0), shape.points.max(axis=0)])
@@ -697,8 +700,8 @@ class _Shaped:
                 groups.setdefault(whole.id(), []).append(number)
         gone = set[int]()
         on_floor = {number for number, one in self.pieces.items() if one.bottom <= ON_FLOOR}
-        for (first, *others), is_whole in list(find_stacks(groups.values(), self.bounds, on_floor, beside=True)):
-            name = say(self._wholes[first].Name) if is_whole else ""
+        for (first, *others), is_whole in list(find_stacks(groups.values(), self.bounds, on_floor, at_side=True)):
+            name = clean_text(self._wholes[first].Name) if is_whole else ""
             self._take(first, join([self._shapes[number] for number in (first, *others)]), name)
             gone |= {*others}
         for number in gone:
@@ -711,11 +714,11 @@ def _name_type(element: Element) -> str:
     from ifcopenshell.util.element import get_type
 
     kind = get_type(element)
-    type_name = say(kind.Name) if kind is not None else ""
-    name, tag = say(element.Name), say(getattr(element, "Tag", None))
+    type_name = clean_text(kind.Name) if kind is not None else ""
+    name, tag = clean_text(element.Name), clean_text(getattr(element, "Tag", None))
     parts = [part.strip() for part in name.split(":")]
     if len(parts) > 1:
         if parts[-1] == tag or parts[-1].isdigit():
             parts.pop()
         return " ".join(dict.fromkeys(filter(None, parts)))
-    return type_name or say(getattr(element, "ObjectType", None)) or name or element.is_a()
+    return type_name or clean_text(getattr(element, "ObjectType", None)) or name or element.is_a()

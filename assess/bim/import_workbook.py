@@ -33,7 +33,7 @@ class ImportedBuilding:
     """What a file tells of a building: rows by field of `assess.workbook.schema`, in the units of SI headers.
 
     `types` join the Catalogue, in place of those of their name there. `warnings` may distort the results until it is
-    corrected, `remarks` are what else is worth checking. `files` stand beside the workbook, which names them: plans.
+    corrected, `remarks` are what else is worth checking. `files`, such as plans, are written next to the workbook.
     """
 
     source: str
@@ -131,10 +131,10 @@ def list_remarks(imported: ImportedBuilding) -> tuple[Problem, ...]:
     """Return what was left out and what has to be checked, as problems: for a table of many buildings."""
     groups = [group for _, group in group_skipped(imported.skipped)]
     return (
-        *(Problem("warning", "", "", say_skipped(one, MOST_NAMED)) for one in groups if one[0].is_furniture),
+        *(Problem("warning", "", "", describe_skipped(one, MOST_NAMED)) for one in groups if one[0].is_furniture),
         *(Problem("warning", "", "", text) for text in imported.warnings),
         *(Problem("note", "", "", text) for text in imported.remarks),
-        *(Problem("note", "", "", say_skipped(one, FEW_NAMED)) for one in groups if not one[0].is_furniture),
+        *(Problem("note", "", "", describe_skipped(one, FEW_NAMED)) for one in groups if not one[0].is_furniture),
     )
 
 
@@ -146,7 +146,7 @@ def group_skipped(skipped: Sequence[Skipped]) -> list[tuple[Text, list[Skipped]]
     return list(groups.items())
 
 
-def say_skipped(group: Sequence[Skipped], most: int) -> Text:
+def describe_skipped(group: Sequence[Skipped], most: int) -> Text:
     """Return what was left out for one reason: the first types with their numbers, and how many types more."""
     pieces = count(sum(one.count for one in group), "piece" if group[0].is_furniture else "component")
     types = ", ".join(f"{one.type} ({one.count:,})" for one in group[:most])
@@ -165,5 +165,5 @@ def describe(found: ImportedBuilding) -> Iterator[str]:
     yield f"{found.source}: {f'{len(found.items):,} of ' if left else ''}{pieces} {where} taken."
     if not found.items:
         yield "No furniture was found: fill in Items by hand."
-    yield from (say_skipped(group, MOST_NAMED) for _, group in group_skipped(found.skipped))
+    yield from (describe_skipped(group, MOST_NAMED) for _, group in group_skipped(found.skipped))
     yield from (f"Check: {text}" for text in (*found.warnings, *found.remarks))

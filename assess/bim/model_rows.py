@@ -1,4 +1,4 @@
-"""A building model as the rows of an inventory, with a plan of each storey beside it.
+"""A building model as the rows of an inventory, with a plan of each storey.
 
 Breadth is the distance between the outer supports where that is less than the body's, as pieces rock about their
 supports; where the supports stand closest along the longer side, Breadth lies along that. Of a base with oblique edges,
@@ -94,8 +94,8 @@ def list_building(model: BuildingModel, routes: Drafts = "none") -> ImportedBuil
             for (_, breadth, width, height), name in types.items()
         ],
         skipped=(*model.skipped, *own.outside),
-        warnings=(*model.warnings, *own.warn(), *remarks),
-        remarks=(*model.remarks, *own.remark()),
+        warnings=(*model.warnings, *own.list_warnings(), *remarks),
+        remarks=(*model.remarks, *own.list_remarks()),
         files={files[key]: svg for key, (svg, _) in drawn.items()},
     )
 
@@ -209,7 +209,7 @@ class _Building:
             row = {"place": self.places[name], "floor": self.floors[end.storey], "kind": what}
             yield row | {"x": round(end.x, 3), "y": round(end.y, 3)}
 
-    def warn(self) -> Iterator[Text]:
+    def list_warnings(self) -> Iterator[Text]:
         known = [(self.floors[one.key], one.elevation) for one in self.storeys if LOWEST <= one.elevation <= HIGHEST]
         yield from note_datum(known)
         odd = [name for name in self.floors.values() if name not in dict(known)]
@@ -225,7 +225,7 @@ class _Building:
                 "says. Type the Breadth in their Notes to be on the safe side.", off,
             )  # fmt: skip
 
-    def remark(self) -> Iterator[Text]:
+    def list_remarks(self) -> Iterator[Text]:
         model = self.model
         fitted = sum(one.piece.is_fitted for one in self.pieces)
         if fitted:

@@ -296,37 +296,37 @@ MOST_NAMED = 5
 Bounds = FloatArray  # least and largest X, Y and Z of bodies, (n, 6): x, y, z, X, Y, Z [m]
 
 
-def find_pairs(upper: Bounds, lower: Bounds, *, beside: bool = False) -> list[tuple[int, int]]:
+def find_pairs(upper: Bounds, lower: Bounds, *, at_side: bool = False) -> list[tuple[int, int]]:
     """Return the pairs of an upper body, which does not stand on the floor, and one on which it stands.
 
-    `beside`: also of one that it touches at a side, as a shelf between the sides of a bookcase does.
+    `at_side`: also of one that it touches at a side, as a shelf between the sides of a bookcase does.
     """
     tree = shapely.STRtree(shapely.box(lower[:, 0], lower[:, 1], lower[:, 3], lower[:, 4]))
     gap = TOUCHING
     wide = shapely.box(upper[:, 0] - gap, upper[:, 1] - gap, upper[:, 3] + gap, upper[:, 4] + gap)
     above, below = tree.query(wide)
     bottom = upper[above, 2]
-    least = lower[below, 2 if beside else 5] - gap
+    least = lower[below, 2 if at_side else 5] - gap
     reach = (least <= bottom) & (bottom <= lower[below, 5] + gap)
     over = np.minimum(upper[above, 3:5], lower[below, 3:5]) - np.maximum(upper[above, :2], lower[below, :2])
     own, area = ((one[:, 3:5] - one[:, :2]).prod(axis=1) for one in (upper, lower))
-    cover = own[above] if beside else over.clip(0).prod(axis=1)
+    cover = own[above] if at_side else over.clip(0).prod(axis=1)
     found = reach & (cover >= LEAST_COVER * area[below])
     return [(int(one), int(other)) for one, other in zip(above[found], below[found], strict=True)]
 
 
 def find_stacks(
-    groups: Iterable[Sequence[int]], bounds: Mapping[int, Bounds], on_floor: Collection[int], *, beside: bool = False
+    groups: Iterable[Sequence[int]], bounds: Mapping[int, Bounds], on_floor: Collection[int], *, at_side: bool = False
 ) -> Iterator[tuple[list[int], bool]]:
     """Yield the bodies of a group that are one piece, the lowest first, and whether they are the whole group.
 
-    What is off the floor belongs to what it touches; bodies that stand beside each other on the floor stay apart.
-    `beside`: see `find_pairs`.
+    What is off the floor belongs to what it touches; bodies that stand next to each other on the floor stay apart.
+    `at_side`: see `find_pairs`.
     """
     for members in groups:
         off, own = [one for one in members if one not in on_floor], np.array([bounds[one] for one in members])
         label = {one: at for at, one in enumerate(members)}
-        for at, other in find_pairs(np.array([bounds[one] for one in off]).reshape(-1, 6), own, beside=beside):
+        for at, other in find_pairs(np.array([bounds[one] for one in off]).reshape(-1, 6), own, at_side=at_side):
             one, two = label[off[at]], label[members[other]]
             label = {each: min(one, two) if kind in (one, two) else kind for each, kind in label.items()}
         for kind in dict.fromkeys(label.values()):

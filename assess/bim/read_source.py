@@ -1,4 +1,4 @@
-"""Files that an inventory is imported from: which reader takes one is told by its content, not by its name."""
+"""Files that an inventory is imported from: the content of a file, not its name, decides which reader takes it."""
 
 import hashlib
 import zipfile

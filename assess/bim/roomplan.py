@@ -144,7 +144,7 @@ class Scanned:
 
 
 def _load(data: bytes, name: str) -> dict[str, Any]:
-    """Return the document of a file, its "rooms" a list; ModelError if it is no scan, not complete, or too large."""
+    """Return the document of a file, its "rooms" a list; ModelError if it is not a scan, not complete, or too large."""
     fault = None
     if len(data) > MOST_BYTES:
         fault = fill("{name} is larger than {most} MB, the most that is read of a scan. Scan fewer rooms at a time.",
@@ -274,7 +274,7 @@ def _whole(value: object, otherwise: int) -> int:
 
 
 def _text(value: object) -> str:
-    """Return a text without what no file can hold, "" for what is no text."""
+    """Return a text without characters that cannot be printed, "" for anything else."""
     if not isinstance(value, str):
         return ""
     return "".join(one for one in value[:LONGEST_WORD] if one.isprintable()).strip()

@@ -1,4 +1,4 @@
-"""Plans of a model beside a workbook that is updated: which are written, and under which names. Files of users stay.
+"""Plans of a model next to a workbook that is updated: which are written, and under which names. Files of users stay.
 
 A plan is an import's where Floors names it, its name is one that an import gives, and its file is as an import draws
 it. Only such files are replaced, and only plans that Floors names in the end are written.
@@ -21,7 +21,7 @@ PLAN = ("plan", "plan_left", "plan_bottom", "plan_width", "plan_turn")  # fields
 _NUMBER = re.compile(r"-\d+(?=\.svg$)", re.IGNORECASE)
 """What tells a plan from another file of its name: the 2 of ``a-1-2.svg``."""
 
-Files = Path | Mapping[str, bytes] | None  # the folder of a workbook, or the files beside it
+Files = Path | Mapping[str, bytes] | None  # the folder of a workbook, or the files next to it
 
 
 class PlanUpdate:

@@ -42,7 +42,7 @@ class Written(dict[str, Path]):
 
 @contextmanager
 def stage_for(folder: Path) -> Iterator[Path]:
-    """Make the stage of what is to be in a folder: in it, or, where it does not exist yet, beside it."""
+    """Make the stage of what is to be in a folder: in it, or, where it does not exist yet, next to it."""
     place = folder.resolve()
     with staging(next(one for one in (place, *place.parents) if one.is_dir())) as stage:
         yield stage
@@ -219,7 +219,7 @@ def flush_folder(path: Path) -> None:
 
 
 def find_digest(path: Path) -> str | None:
-    """Return the SHA-256 of a file; None if it is no plain file (missing, a folder, a link). OSError if unreadable."""
+    """Return the SHA-256 of a file; None if it is missing, a folder or a link. OSError if it cannot be read."""
     if path.is_symlink() or not path.is_file():
         return None
     with path.open("rb") as file:

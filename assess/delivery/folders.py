@@ -6,7 +6,7 @@ process that was killed, and is removed by the next process that makes one of it
 Where the system locks a folder itself (Linux and macOS, local disks), nothing is written for a lock. Elsewhere
 (Windows, network file systems) a file `FILE` in the folder is locked, and removed at the end.
 
-A process has one set of signals: whatever ends it early asks here what it has on the disk for a time, and whether it is
+A process has one set of signals: what ends it early asks here what it has on the disk for a time, and whether it is
 moving files into place.
 """
 
@@ -155,7 +155,7 @@ def sweep(where: Path, prefix: str = PREFIX) -> None:
 
 
 def is_ours(folder: Path) -> bool:
-    """Tell whether a folder is there, is no link, and is this user's."""
+    """Tell whether a folder is there, not a link, and this user's."""
     try:
         found = folder.lstat()
     except OSError:
