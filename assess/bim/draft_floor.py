@@ -84,7 +84,7 @@ def find_sides(model: BuildingModel) -> dict[str, Sides]:
 
 
 def find_ground(model: BuildingModel) -> Storey | None:
-    """Return the lowest storey with spaces and doors that is not a basement, else the highest; None if none has them."""
+    """Return the lowest storey with spaces and doors that is not a basement, else the highest of these, if any."""
     with_spaces, with_doors = ({one.storey for one in some} for some in (model.spaces, model.doors))
     storeys = [one for one in model.storeys if one.key in with_spaces & with_doors]
     above = [one for one in storeys if one.elevation >= BASEMENT]
