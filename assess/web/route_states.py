@@ -1,6 +1,5 @@
 """States of routes, rooms and segments as the reports word them, for the page."""
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from assess.errors import AssessError
@@ -59,6 +58,13 @@ def describe_states(tables: Tables, inventory: Inventory, found: Evaluation) -> 
         routes = evaluate_route_tables(found.assessment, SILENT)
     known, places = {key(one.route) for one in routes.routes}, {one.place: one for one in inventory.places}
     lost = [(name, why) for name, why in left_out.items() if name and name not in known]
+    remarks, faulty = list[str](), len(tables["Items"].rows) - len(inventory.items)
+    if faulty and (routes.routes or left_out):
+        remarks.append(ngettext("{n:,} row of furniture has an error or a blank, and does not count.",
+                                "{n:,} rows of furniture have errors or blanks, and do not count.", faulty))  # fmt: skip
+    if routes.routes:
+        remarks += [*say.describe_routes(routes), *say.say_to_fill_in(routes)]
+        remarks += filter(None, [say.say_uncounted(routes)])
     return {
         "routes": [
             *({"route": one.route, **(
@@ -76,7 +82,7 @@ def describe_states(tables: Tables, inventory: Inventory, found: Evaluation) -> 
             {"row": one.workbook_row, "route": one.route, "segment": one.segment, **_describe(one, routes)}
             for one in routes.segments
         ],
-        "remarks": list(_list_remarks(tables, inventory, routes, is_left_out=bool(left_out))),
+        "remarks": remarks,
         "error": "",
     }  # fmt: skip
 
@@ -142,14 +148,3 @@ def _find_left_out(tables: Tables, inventory: Inventory) -> dict[str, str]:
         )
         for name, rows in found.items()
     }  # fmt: skip
-
-
-def _list_remarks(tables: Tables, inventory: Inventory, routes: RouteTables, *, is_left_out: bool) -> Iterator[str]:
-    lost = len(tables["Items"].rows) - len(inventory.items)
-    if lost and (routes.routes or is_left_out):
-        yield ngettext("{n:,} row of furniture has an error or a blank, and does not count.",
-                       "{n:,} rows of furniture have errors or blanks, and do not count.", lost)  # fmt: skip
-    if routes.routes:
-        yield from say.describe_routes(routes)
-        yield from say.say_to_fill_in(routes)
-        yield from filter(None, [say.say_uncounted(routes)])

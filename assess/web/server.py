@@ -45,12 +45,10 @@ GRACE = 2
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where the server listens, and to which names it answers.
+    """Where the server listens: at any free port for 0; and in which language, if not that of workbook or browser.
 
-    * `host`, `port`: the address; port 0 is any that is free.
-    * `allowed`: names by which browsers reach it through a proxy, with a port where that is not the usual one.
-    * `user_header`: the header in which the proxy names the user; blank on the own machine.
-    * `language`: code of the language of the page; blank: the workbook's, else the browser's.
+    `allowed` are names by which browsers reach it through a proxy, with a port where that is not the usual one;
+    `user_header` is the header in which the proxy names the user, blank on the own machine.
     """
 
     host: str = LOOPBACK

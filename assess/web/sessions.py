@@ -65,16 +65,12 @@ SENDING = fill("Another building model is being sent. Wait until it has been rec
 
 @dataclass(slots=True, eq=False)
 class Session:
-    """What one user has open.
+    """What one user has open; `key` is the value of its cookie, `folder` is removed with it.
 
-    * `key`: value of the cookie that belongs to it.
-    * `folder`: a folder for this session alone, that is removed with it.
     * `home`: where new workbooks are made: the folder in which the command was started; None: they are only held.
     * `slots`, `reading_slots`, `sending_slots`: places of simulations and of building models, of all sessions; and of a
       model of this one while it is sent: one at a time, so that their bytes can be counted.
-    * `reading`, `imported`: the building model that was sent last, as long as it has not become a workbook, and that of
-      the open workbook.
-    * `language`: code of the language of the page; blank: see `assess.web.texts.choose_language`.
+    * `reading`, `imported`: the building model that was sent last, until it is a workbook, and that of the workbook.
     * `seen`, `looked`: when its user last asked for anything, and when the file was last looked at.
     * `downloaded`: version of the workbook that was downloaded last.
     """

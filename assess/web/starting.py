@@ -157,17 +157,15 @@ def place_workbook(made: Made, folder: Path) -> Path:
     """Write a new workbook and its files, never over a file; RequestError if the name is taken, or OutputError."""
     path = folder / made.name
     if path.exists() or path.is_symlink():
-        raise RequestError(
-            fill("{name} exists already.", name=made.name), CONFLICT, fill("Choose another name, or open it.")
-        )
+        fix = fill("Choose another name, or open it.")
+        raise RequestError(fill("{name} exists already.", name=made.name), CONFLICT, fix)
     try:
         place_files(made, folder)
         with path.open("xb") as file:
             file.write(made.data)
     except OSError as error:
-        raise OutputError.about(
-            "{name} cannot be written: {why}.", name=made.name, why=error.strerror or str(error)
-        ) from None
+        why = error.strerror or str(error)
+        raise OutputError.about("{name} cannot be written: {why}.", name=made.name, why=why) from None
     return path
 
 

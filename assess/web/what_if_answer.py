@@ -24,17 +24,13 @@ if TYPE_CHECKING:
     from assess.web.snapshot import Snapshot
 
 ASKED = ("scale", "scenario", "anchor", "first")
-"""What a request may hold."""
+"""What a request may hold: of the last two names of pieces, and a number of fixes."""
 FAR = 1e6
 """A scale beyond this is no number that anyone means [-]."""
 
 
 def try_out(snapshot: "Snapshot", request: object) -> dict[str, Any]:
-    """Return the answer of `POST /api/what-if`.
-
-    `request`: a mapping with any of "scale", "scenario", "anchor" (names of pieces) and "first" (a number of fixes).
-    Raises InputError if the request is none of these, or names a piece that is not assessed.
-    """
+    """Return the answer of `POST /api/what-if`; InputError if the request is wrong, or a piece is not assessed."""
     inventory = snapshot.inventory
     with speaking(load_catalogue(inventory.language)):
         settings, first = _read_request(inventory, snapshot.tables, request)

@@ -42,10 +42,9 @@ def read_table(name: str) -> list[dict[str, str]]:
 
 
 def read_catalogue(units: "Units" = "si", use: str = "") -> list[dict[str, Any]]:
-    """Return the built-in types of furniture in the language in use, by name: the drop-down keeps this order.
+    """Return the built-in types, or those of a use of `USES`, in the language in use and the units of the headers.
 
-    `units`: of the headers that the values belong to.
-    `use`: one of `assess.workbook.schema.USES`: the types of this use alone. Blank: every type.
+    They are sorted by name: the drop-down keeps this order.
     """
     rows = []
     for line in catalogue_rows():

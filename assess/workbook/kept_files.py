@@ -19,13 +19,11 @@ MOST_RECORD_BYTES = 256_000_000
 MOST_RECORD_SAMPLES = 20_000_000
 """Samples of all their channels."""
 MOST_ARCHIVES = 50
-"""Zip archives among them."""
 MOST_PICTURE_PIXELS = 500_000_000
 """Pixels of the logo and of all plans."""
 MOST_DRAWINGS = 50
 """Plans that are drawings: one at all its limits takes about 10 s to read."""
 MOST_DRAWING_BYTES = 50_000_000
-"""Bytes of their files."""
 MOST_PHOTOS = 400
 """Photos of pieces: each takes a tenth of a second to read, and about 40 kB in a report."""
 MOST_PHOTO_BYTES = 30_000_000

@@ -41,11 +41,7 @@ REPLACED = ("ground_pga", "sds", "ground_pgv", "shakemap", "shaking")
 def fill_building(
     tables: Tables, problems: list[Problem], given: Mapping[str, Any] | None
 ) -> tuple[Tables, list[Problem]]:
-    """Return the tables with the blanks of Building filled in, and all problems.
-
-    `tables` and `problems`: as read from the workbook.
-    `given`: values by field or header, as in rows in code. Those of lines that the workbook fills in are not used.
-    """
+    """Return the tables with the blanks of Building filled in, by `given` as rows in code have it, and all problems."""
     if not given:
         return tables, problems
     own = tables[BUILDING.name]

@@ -197,12 +197,11 @@ Corner = tuple[float, float]
 
 
 def parse_outline(text: str, factor: float) -> Outline:
-    """Return the corners of an outline [m]; its last corner may repeat the first.
+    """Return the corners of an outline, ``x y; x y; x y`` [m by `factor`]; its last corner may repeat the first.
 
-    `text`: ``x y; x y; x y``; the comma of ``6,5 0`` is a decimal one.
-    `factor`: from its unit to m.
-    Raises CellError if a corner is not two numbers or can be read in two ways (``1,500 0``), two that follow each
-    other are the same, there are fewer than three or more than 200, or its sides cross or touch each other.
+    The comma of ``6,5 0`` is a decimal one. Raises CellError if a corner is not two numbers or can be read in two ways
+    (``1,500 0``), two that follow each other are the same, there are fewer than three or more than 200, or its sides
+    cross or touch each other.
     """
     corners: list[Corner] = []
     parts = (part.strip() for part in text.replace("\n", ";").split(";"))

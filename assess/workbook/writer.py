@@ -33,10 +33,7 @@ class _Packed(io.BytesIO):
 def write_book(
     path: Path, fill: Callable[[xlsxwriter.Workbook], None], by_row: bool = False, progress: Progress = SILENT
 ) -> None:
-    """Write a workbook.
-
-    `fill`: adds the sheets to the open workbook.
-    `by_row`: whether the sheets are written row by row, in little memory.
+    """Write a workbook, to which `fill` adds the sheets; `by_row` in little memory, row by row.
 
     Raises OSError if it cannot be written; CancelledError if the work was cancelled (no file is left).
     """
