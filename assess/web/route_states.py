@@ -60,8 +60,10 @@ def describe_states(tables: Tables, inventory: Inventory, found: Evaluation) -> 
     lost = [(name, why) for name, why in left_out.items() if name and name not in known]
     remarks, faulty = list[str](), len(tables["Items"].rows) - len(inventory.items)
     if faulty and (routes.routes or left_out):
-        remarks.append(ngettext("{n:,} row of furniture has an error or a blank, and does not count.",
-                                "{n:,} rows of furniture have errors or blanks, and do not count.", faulty))  # fmt: skip
+        remarks.append(ngettext(
+            "{n:,} row of furniture has an error or a blank, and does not count.",
+            "{n:,} rows of furniture have errors or blanks, and do not count.", faulty,
+        ))  # fmt: skip
     if routes.routes:
         remarks += [*say.describe_routes(routes), *say.say_to_fill_in(routes)]
         remarks += filter(None, [say.say_uncounted(routes)])
