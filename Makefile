@@ -38,9 +38,10 @@ test-long: $(VENV)/.developing
 	-$(BIN)/python -m pip install --quiet --disable-pip-version-check --only-binary :all: 'atheris>=3'
 	$(BIN)/python tests/run_long.py
 
-# What outputs say where that was changed on purpose: prints the difference.
+# What outputs say where that was changed on purpose; git shows the difference.
 nets: $(VENV)/.developing
-	$(BIN)/python -W ignore -m tests.nets.nets
+	$(PYTEST) --anew tests/*/test_shown.py tests/cli/test_printed.py
+	git diff --stat -- tests
 
 lint: $(VENV)/.developing
 	$(BIN)/ruff check .

@@ -4,6 +4,7 @@ The last digits of sums and of libm differ between processors, so that now and t
 just stands overturns it on another: a probability out of 200 motions moves by half a percentage point, a count by one.
 """
 
+import difflib
 import math
 import re
 from collections.abc import Iterable, Iterator
@@ -17,6 +18,12 @@ POINTS = 5.0
 def strip_numbers(line: str) -> str:
     """Return the words of a line, with # in place of each number."""
     return _NUMBER.sub("#", line)
+
+
+def list_differences(now: list[str], kept: list[str]) -> list[str]:
+    """Return how the lines of an output differ from what is kept, as diff does, without what stands around."""
+    marks = difflib.unified_diff(kept, [line for text in now for line in text.splitlines()], n=0, lineterm="")
+    return list(marks)[2:]
 
 
 def differences(now: Iterable[str], then: Iterable[str]) -> list[str]:

@@ -16,6 +16,7 @@ from hypothesis import settings
 
 import assess
 from docs.screenshot import find_browser
+from tests.alike import list_differences
 from tests.waiting import PATIENCE
 from tests.workbooks import UNVERIFIED
 
@@ -38,6 +39,7 @@ settings.load_profile("same")
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Take the commit since which changes count: tests of packages that stand alone run if they or the core changed."""
     parser.addoption("--since", metavar="COMMIT", default=os.environ.get("ASSESS_SINCE", ""))
+    parser.addoption("--anew", action="store_true", help="write what outputs say where that differs from what is kept")
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
@@ -77,6 +79,21 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_finish() -> None:
     """Leave what collecting made out of every later search for garbage."""
     gc.freeze()
+
+
+@pytest.fixture
+def differ(request):
+    """Return how lines differ from those kept beside the test in shown/NAME.txt; with --anew they are written there."""
+
+    def differ(name: str, now: list[str], by: Callable[..., list[str]] = list_differences) -> list[str]:
+        path = request.path.parent / "shown" / f"{name}.txt"
+        found = by(now, path.read_text(encoding="utf-8").splitlines() if path.exists() else [])
+        if found and request.config.getoption("--anew"):
+            path.write_text("".join(f"{line}\n" for line in now), encoding="utf-8")
+            return []
+        return found
+
+    return differ
 
 
 @pytest.fixture(scope="session")

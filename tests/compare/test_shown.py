@@ -1,12 +1,7 @@
-"""What the files of three comparisons say, and the terminal: of routes, of simulated pieces, and of other bases.
-
-After a change that is meant, ``python -m tests.compare.test_shown`` writes the lines anew and prints how they differ.
-"""
+"""What the files of three comparisons say, and the terminal: of routes, of simulated pieces, and of other bases."""
 
 import os
 import re
-import tempfile
-from pathlib import Path
 
 import pytest
 
@@ -17,11 +12,10 @@ from assess.compare.past_run import read_run
 from assess.report.report_options import ReportOptions
 from assess.settings import Settings
 from tests.compare.past import change, item, write_routed_run, write_run
-from tests.nets.lines import keep_lines, list_differences, read_excel, read_html, read_json
+from tests.nets.lines import read_excel, read_html, read_json
 from tests.report.routed import PLACES
 from tests.workbooks import ITEMS, UNVERIFIED
 
-SHOWN = Path(__file__).parent / "shown"
 CASES = [("routes", "en"), ("routes", "it"), ("simulated", "en"), ("simulated", "it"), ("bases", "en")]
 CHANGED = 1767225600
 """When all results were changed last [s]."""
@@ -108,20 +102,7 @@ def show(found, language, folder):
     return outputs
 
 
-def find_place(name, language, kind):
-    """Return where the lines of an output are kept."""
-    return SHOWN / f"{name}.{language}.{kind}.txt"
-
-
 @pytest.mark.parametrize(("name", "language"), CASES)
-def test_outputs_say_what_they_said(name, language, tmp_path):
+def test_outputs_say_what_they_said(name, language, tmp_path, differ):
     outputs = show(build(name, tmp_path), language, tmp_path)
-    found = {kind: list_differences(find_place(name, language, kind), lines) for kind, lines in outputs.items()}
-    assert {kind: one for kind, one in found.items() if one} == {}
-
-
-if __name__ == "__main__":
-    for name, language in CASES:
-        with tempfile.TemporaryDirectory() as box:
-            for kind, lines in show(build(name, Path(box)), language, Path(box)).items():
-                keep_lines(find_place(name, language, kind), lines)
+    assert [line for kind, one in outputs.items() for line in differ(f"{name}.{language}.{kind}", one)] == []

@@ -1,6 +1,5 @@
 """What each output holds, as lines: the words and numbers that a reader sees, each at its place."""
 
-import difflib
 import json
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping
@@ -155,19 +154,3 @@ def render(results: Results, folder: Path, formats: Collection[str]) -> dict[str
     written = assess.write_reports(results, folder, tuple(formats))
     found = {name: READERS[name](written[name]) for name in formats}
     return found | {TERMINAL: list(describe_result(results))}
-
-
-def list_differences(path: Path, now: list[str]) -> list[str]:
-    """Return how the lines of an output differ from what is kept, as diff does, without what stands around."""
-    kept = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-    marks = difflib.unified_diff(kept, [line for text in now for line in text.splitlines()], n=0, lineterm="")
-    return list(marks)[2:]
-
-
-def keep_lines(path: Path, now: list[str], say: Callable[[str], Any] = print) -> None:
-    """Keep the lines of an output, and say how they differ from what was kept."""
-    if difference := list_differences(path, now):
-        say(f"{path.stem}: {len(difference)} lines")
-        for line in difference[:20]:
-            say(f"  {line[:200]}")
-        path.write_text("".join(f"{line}\n" for line in now), encoding="utf-8")

@@ -1,17 +1,14 @@
 """The nets: 25 workbooks, what was found of each, and what every output says of it.
 
-Outputs are rendered from results that are kept in a file, so that they are the same on every machine. After a change
-that is meant, ``python -m tests.nets.nets`` writes the outputs anew and shows how they differ; ``--assess`` assesses
-the workbooks anew first. Names of workbooks limit both to these.
+Outputs are rendered from results that are kept in a file, so that they are the same on every machine: ``make nets``
+writes the outputs anew, ``python -m tests.nets.nets`` assesses the workbooks anew, or those that are named.
 """
 
 import argparse
-import shutil
 import tempfile
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -22,7 +19,7 @@ from assess.report.figures.math_figures import MathFigure
 from assess.report.word import writer
 from assess.results import Results
 from assess.settings import Settings
-from tests.nets.lines import PDFS, QUICK, keep_lines, list_differences, render
+from tests.nets.lines import PDFS, QUICK, render
 from tests.nets.make import CITY, MADE, ROOT, make_workbooks
 from tests.nets.stored import read_results, write_results
 from tests.pictures import picture
@@ -104,34 +101,10 @@ def find_shown(name: str, kind: str) -> Path:
     return SHOWN / f"{name}.{kind}.txt"
 
 
-def compare(name: str, kind: str, now: list[str]) -> list[str]:
-    """Return how the lines of an output differ from what is kept."""
-    return list_differences(find_shown(name, kind), now)
-
-
-def rewrite(names: Collection[str] = NAMES, *, anew: bool = False, say: Callable[[str], Any] = print) -> None:
-    """Write the outputs anew, and say what differs."""
-    SHOWN.mkdir(exist_ok=True)
-    with tempfile.TemporaryDirectory() as box:
-        made = Path(box)
-        if anew:
-            make_workbooks(made)
-        for name in names:
-            if anew:
-                store(name, assess_workbook(name, made))
-            folder = Path(tempfile.mkdtemp(dir=box))
-            results = read_stored(name, folder)
-            found = dict(show(name, results, folder / "out"))
-            if name in PRINTED:
-                found |= show(name, results, folder / "printed", PDFS)
-            for kind, lines in found.items():
-                keep_lines(find_shown(name, kind), lines, say)
-            shutil.rmtree(folder)
-
-
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", default=NAMES, help="workbooks")
-    parser.add_argument("--assess", action="store_true", help="assess the workbooks anew")
-    given = parser.parse_args()
-    rewrite(given.names, anew=given.assess)
+    with tempfile.TemporaryDirectory() as box:
+        make_workbooks(Path(box))
+        for name in parser.parse_args().names:
+            store(name, assess_workbook(name, Path(box)))

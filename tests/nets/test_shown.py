@@ -2,19 +2,10 @@
 
 import pytest
 
+from tests.alike import list_differences
 from tests.nets.lines import PDFS
-from tests.nets.nets import (
-    NAMES,
-    PRINTED,
-    SHOWN,
-    STORED,
-    compare,
-    find_shown,
-    read_stored,
-    show,
-)
+from tests.nets.nets import NAMES, PRINTED, SHOWN, STORED, find_shown, read_stored, show
 
-ANEW = "where that is meant, write them anew: python -m tests.nets.nets"
 IN_SLOW = {
     ("everything", "pdf"), ("everything", "annex"), ("everything-it", "pdf"), ("doubted", "pdf"), ("city-1", "pdf"),
 }  # fmt: skip
@@ -29,12 +20,9 @@ def test_there_are_25_workbooks_and_nothing_is_kept_of_others():
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_outputs_say_what_they_said(name, tmp_path):
+def test_outputs_say_what_they_said(name, tmp_path, differ):
     found = show(name, read_stored(name, tmp_path), tmp_path / "out")
-    differences = {
-        kind: difference for kind, lines in found.items() if (difference := list(compare(name, kind, lines)))
-    }
-    assert differences == {}, ANEW
+    assert [line for kind, lines in found.items() for line in differ(f"{name}.{kind}", lines)] == []
     kept = {path.name for path in SHOWN.glob(f"{name}.*")} - {find_shown(name, kind).name for kind in PDFS}
     assert {find_shown(name, kind).name for kind in found} == kept
 
@@ -47,9 +35,9 @@ def test_outputs_say_what_they_said(name, tmp_path):
         for kind in PDFS
     ],
 )
-def test_pdfs_say_what_they_said(name, kind, tmp_path):
+def test_pdfs_say_what_they_said(name, kind, tmp_path, differ):
     found = show(name, read_stored(name, tmp_path), tmp_path / "out", (kind,))
-    assert list(compare(name, kind, found[kind])) == [], ANEW
+    assert differ(f"{name}.{kind}", found[kind]) == []
 
 
 def test_a_number_a_sentence_and_a_column_that_change_are_named(tmp_path):
@@ -64,6 +52,6 @@ def test_a_number_a_sentence_and_a_column_that_change_are_named(tmp_path):
         ("csv", "item,", ""),
     ):
         changed = [line.replace(before, after) for line in shown[kind]]
-        difference = list(compare(name, kind, changed))
+        difference = list_differences(changed, find_shown(name, kind).read_text(encoding="utf-8").splitlines())
         assert any(line.startswith("-") and before in line for line in difference), kind
         assert any(line.startswith("+") and before not in line for line in difference), kind
