@@ -246,8 +246,8 @@ def anchor_named(inventory: Inventory, names: Sequence[str]) -> Inventory:
     wanted = set(spell_names(inventory, names))
     indices = {at for at, one in enumerate(inventory.items) if one.item in wanted}
     already = [inventory.items[at].item for at in sorted(indices) if inventory.items[at].anchored == "yes"]
-    said = (fill("Item {name!r} is anchored already: its anchor is taken to hold.", name=name) for name in already)
-    notes = [Problem("note", "Items", "", message) for message in said]
+    texts = (fill("Item {name!r} is anchored already: its anchor is taken to hold.", name=name) for name in already)
+    notes = [Problem("note", "Items", "", text) for text in texts]
     return replace(_anchor(inventory, indices), problems=(*inventory.problems, *notes))
 
 

@@ -131,7 +131,7 @@ def _numbers(outcome: Outcome, name: str) -> FloatArray:
 
 
 def find_ruling(cases: Cases, settings: Settings) -> FloatArray:
-    """Return the peak that tells the worse of several motions, (n,): PFV or PFA, by the adopted formula."""
+    """Return the peak by which the worse of several motions is chosen, (n,): PFV or PFA, by the adopted formula."""
     return np.asarray(getattr(cases, adopted_formula(settings.class_by).ruled_by))
 
 
@@ -151,7 +151,7 @@ def choose_items(
     verify: str, methods: Sequence[Method], outcomes: Mapping[str, Outcome], case_item: NDArray[np.intp],
     has_route: BoolArray,
 ) -> BoolArray:  # fmt: skip
-    """Return which items (m,) are to be simulated; `has_route` (m,) tells which of them stand on a route.
+    """Return which items (m,) are to be simulated; `has_route` (m,) marks those on a route.
 
     "high": those that are high or very high by one of the `methods` that select under any of their motions, those with
     a flag of a method that selects, as outside the checked range of the formula, and those on a route.
@@ -227,7 +227,7 @@ def build_falls(
 ) -> Falls:  # fmt: skip
     """Return how the pieces of an inventory fall: a blank axis takes the outcomes of the governing one.
 
-    A piece of `either_axis` (by its index) takes those instead: in which draws it falls along either axis. `held` tells
+    A piece of `either_axis` (by its index) takes those instead: in which draws it falls along either axis. `held` marks
     which pieces count as anchored.
 
     Draw k is one earthquake for the whole building: all simulated pieces share its scale, and on floors whose motions

@@ -31,7 +31,7 @@ class DrawSums:
     * `falls` (runs,): pieces that fall in each draw, of those in the classes; None where nothing was simulated, or each
       piece in a number of draws of its own.
     * `people_blocked`, `routes_blocked` (runs,): people whose route is blocked in each draw, and routes, of those with
-      joint outcomes; None likewise.
+      joint outcomes; None in the same cases.
     * `people_expected`, `routes_expected`: expected numbers of the same, of all routes that are known.
     * `people_apart`, `routes_apart`: the part of them that is in no draw: of routes without joint outcomes.
     * `people_not_known`: people on routes whose state is not known: they are in none of these numbers.

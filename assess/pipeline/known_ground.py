@@ -1,4 +1,4 @@
-"""What the workbook tells of the ground motion and of the building, from which floors without a motion follow."""
+"""Ground motion and building as the workbook gives them, from which floors without a motion follow."""
 
 import math
 from collections.abc import Collection

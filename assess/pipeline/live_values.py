@@ -66,7 +66,7 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
     for method in (formula, paper_formula()):
         chances, flags = outcomes[method.key].value.tolist(), outcomes[method.key].flags
         outside = flags["extrapolated"].tolist()
-        classes.append(list(map(_say_class, inventory.items, governing, chances, outside, can_rock)))
+        classes.append(list(map(_show_class, inventory.items, governing, chances, outside, can_rock)))
     rows, ratios = [], cases.breadth_to_height.tolist()
     found = zip(ratios, governing, values, zip(*classes, strict=True), can_rock, strict=True)
     for ratio, motion, own, shown, rocks in found:
@@ -91,7 +91,7 @@ def _build_cases(items: Sequence[Item], motions: Sequence[Demand | None]) -> Cas
     return replace(cases, dispersion=spread, peak=peak)
 
 
-def _say_class(
+def _show_class(
     item: Item, governing: Demand | None, adopted: float, is_outside: bool = False, can_rock: bool = True
 ) -> str:
     if item.anchored == YES:
@@ -120,7 +120,7 @@ def without_shaking(content: Content, units: Units = "si") -> Content:
     """Return a content with live columns but no shaking: B/H, and that it is missing; WorkbookError if more is."""
     floors = [{**row, "pfa_x": 1.0} for row in content.rows["Floors"]]  # of which no column shows anything
     items, hint = _read({**content.rows, "Floors": floors}, units).items, gettext(NO_SHAKING)
-    labels = [_say_class(one, None, 0.0) if one.anchored == YES else hint for one in items]
+    labels = [_show_class(one, None, 0.0) if one.anchored == YES else hint for one in items]
     live = [_write_unknown(one.breadth / one.height, label, hint) for one, label in zip(items, labels, strict=True)]
     return replace(content, live=live)
 

@@ -200,7 +200,7 @@ def _on_ground_pga(inventory: Inventory, demands: Demands, scenario: str) -> Ite
         for name, label in (("ground_pga", "Ground PGA"), ("sds", "SDS")):
             if given[name] is None:
                 continue
-            why = _say_unused(demands)
+            why = _explain_unused(demands)
             if scenario != "as filled":
                 why = fill("scenario '{scenario}'", scenario=fill(scenario))
             message = _unused(fill(label), why)
@@ -225,7 +225,7 @@ def _list_drawn(demands: Demands) -> list[Demand]:
     return [one for one in every if one.drawn is not None and not one.drawn.at_grade]
 
 
-def _say_unused(demands: Demands) -> Text:
+def _explain_unused(demands: Demands) -> Text:
     if any(one.drawn for parallel in demands.values() for one in parallel):
         return fill("the motion at grade is known")
     return fill("every floor has a record")
@@ -237,7 +237,7 @@ def _on_ground_pgv(inventory: Inventory, demands: Demands) -> Iterator[Problem]:
     pga, pgv, cell = find_ground(inventory).pga, building.ground_pgv, building.cell("ground_pgv")
     if not _list_drawn(demands):
         if pgv is not None:
-            yield Problem("note", "Building", cell, _unused(fill("Ground PGV"), _say_unused(demands)))
+            yield Problem("note", "Building", cell, _unused(fill("Ground PGV"), _explain_unused(demands)))
     elif pgv is None:
         if building.ground_pga is not None or building.sds is not None:
             message = fill(

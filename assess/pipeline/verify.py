@@ -185,7 +185,7 @@ class Sweep:
     def rock(self, levels: FloatArray, wanted: BoolArray | None = None) -> list[RockedLevels]:
         """Return what the cases of each ensemble do at each of some levels (l,).
 
-        `wanted` (n, l) tells at which levels each case is rocked; at all by default. Raises CancelledError if the
+        `wanted` (n, l) marks the levels at which each case is rocked; at all by default. Raises CancelledError if the
         caller stops the work; InputError if the results would need too much memory.
         """
         cases, assessment = self.cases, self.assessment

@@ -115,13 +115,13 @@ def _segment(scene: Scene, at: int) -> SegmentRow:
         # with every free-standing piece fallen
         least_width_m=one.gaps.residual(free) if is_evaluated else None, needed_width_m=needed,
         is_blocked_standing=one.is_blocked_standing, insufficient_for_occupants=is_short,
-        insufficient_after_falls=crowded, pieces=tuple(_beside(scene, at)),
+        insufficient_after_falls=crowded, pieces=tuple(_describe_pieces(scene, at)),
         other_rooms=tuple(scene.piece(item) for item in one.other_rooms),
         flags=one.flags,
     )  # fmt: skip
 
 
-def _beside(scene: Scene, at: int) -> list[BesideRow]:
+def _describe_pieces(scene: Scene, at: int) -> list[BesideRow]:
     """Return the pieces beside a segment with the chance that each falls while it is blocked, the likeliest first.
 
     That of an anchored piece is the one with anchored pieces taken as free-standing.
@@ -329,7 +329,7 @@ def list_unfurnished(inventory: Inventory) -> tuple[Place, ...]:
     """Return the rooms and corridors of Places in which no furniture is listed.
 
     A room has the pieces of its name, else those of the Room of the segments that begin or end there, and those that
-    stand inside its outline. A row of furniture of which nothing tells the room counts as the only one of a room: so
+    stand inside its outline. A row of furniture whose room is not known counts as the only one of a room: so
     the first of each floor are left out, as many as there are such rows.
     """
     named: dict[str, set[str]] = defaultdict(set)

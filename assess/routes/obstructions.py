@@ -300,7 +300,7 @@ def find_obstructions(inventory: Inventory, progress: Progress = SILENT) -> tupl
                 segment=segment, clear=clear[at], required=required, band=band,
                 flags=tuple(flag for flag, holds in flags.items() if holds),
                 pieces=tuple(
-                    _beside(index, inventory.items[index], covered[index], clear[at], required)
+                    _describe_piece(index, inventory.items[index], covered[index], clear[at], required)
                     for index in sorted(covered)
                 ),
                 gaps=gaps,
@@ -323,7 +323,7 @@ def is_stair(segment: Segment) -> bool:
     return not segment.floor and bool(segment.start and segment.end)
 
 
-def _beside(index: int, item: Item, covered: Coverage, clear: float, required: float) -> BesideRow:
+def _describe_piece(index: int, item: Item, covered: Coverage, clear: float, required: float) -> BesideRow:
     gaps = build_gaps([one for one in covered.obstacles if one.number == 0], clear)
     left = gaps.residual(np.ones(len(gaps.keys), dtype=np.bool_))
     stands = any(not one.falls for one in covered.obstacles)

@@ -284,7 +284,7 @@ def evaluate_folder(folder: Folder, options: Options) -> Finding:
 
 
 def quote(name: str) -> str:
-    """Return a name as Markdown shows it letter for letter, whatever backticks are in it."""
+    """Return a name as Markdown shows it letter for letter, with any backticks."""
     line = re.sub(r"[\r\n]", " ", name)
     fence = "`" * (1 + max((len(one) for one in re.findall("`+", line)), default=0))
     edge = " " if line.startswith("`") or line.endswith("`") else ""
