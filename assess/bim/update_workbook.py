@@ -57,7 +57,7 @@ class Updated:
 
     `changes` is all that was done, and all that was not; `problems` is why new rows could not be added. `moved` was
     added to all positions of the model, so that they have the origin of the workbook [m]. `plans` are to be written
-    beside the workbook: those that Floors names, under names that no file of users has.
+    next to the workbook: those that Floors names, under names that no file of users has.
     """
 
     data: bytes
@@ -79,7 +79,7 @@ def update_workbook(
 
     `data`: the workbook as people have filled it in, in any language, units and order of columns; messages call it
     `name`. `imported`: what the model tells now; pieces without a Source ID are not used. `records`: the folder of the
-    workbook, or the files beside it: stored results of live formulas may rest on these, and plans replace none of them
+    workbook, or the files next to it: stored results of live formulas may rest on these, and plans replace none of them
     but earlier plans.
 
     Raises InputError if the model has no furniture, or the workbook has no Source ID of it; WorkbookError if the

@@ -2,7 +2,7 @@
 
 As with reports, a later comparison replaces or removes only what compare.json lists, so that it is always written.
 compare.json is for other programs and the same in every language; units stand in the names. Its first two entries are
-those of results.json, so that a later comparison knows which files beside it are its own (`assess.report.ownership`).
+those of results.json, so that a later comparison knows which files next to it are its own (`assess.report.ownership`).
 Standings, directions and states are the words of `assess.compare`; null is what a run lacks. compare.xlsx has every
 row, whether it changed or not.
 """

@@ -78,7 +78,7 @@ def _open(data: bytes) -> "Document":
         document, _auditor = recover.read(io.BytesIO(data))
     except PictureError:
         raise
-    except Exception:  # likewise
+    except Exception:  # whatever the library raises
         raise damaged() from None
     if b"EOF" not in data[-64:] and not data.startswith(b"AutoCAD Binary"):
         raise damaged()

@@ -349,7 +349,7 @@ def say_apart(risk: RiskClass, apart: str, *, has_simulated: bool) -> str:
 
 
 def apart_note(one: ItemResult) -> str:
-    """Return what stands beside the sign of a piece that stands apart."""
+    """Return what stands next to the sign of a piece that is counted apart."""
     if one.apart == "unconfirmed":
         risk = risk_word(one.adopted.risk)
         return risk if one.adopted.has_simulated else _("formula: {risk}", risk=risk)
@@ -383,7 +383,7 @@ def was_lowered(risk: str) -> str:
 
 
 COULD_BE, LOWERED = "?", "↓"
-"""Marks beside the symbol of a class where there is no room for words."""
+"""Marks next to the symbol of a class where there is no room for words."""
 UNCONFIRMED, BY_FORMULA, ANCHORED = "◌", "ƒ", "⚓"
 """Signs in place of the symbol of a class, of what stands outside the classes."""
 APART_FILL, ANCHORED_FILL, INK = "#ffffff", "#e3e3e3", "#1c1c1c"
@@ -396,7 +396,7 @@ def marks() -> str:
 
 
 def class_marks(one: ItemResult) -> str:
-    """Return the marks that stand beside the symbol of a class."""
+    """Return the marks that stand next to the symbol of a class."""
     could_be = COULD_BE if find_highest(one) != one.adopted.risk else ""
     return could_be + (LOWERED if one.adopted.lowered_from is not None and not one.apart else "")
 

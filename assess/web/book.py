@@ -227,7 +227,7 @@ class Book:
     def save(self) -> None:
         """Save the changes to the file, whole or not at all; ChangedOutsideError if another program has changed it.
 
-        A file that cannot be written (read-only, gone, no space) is told by ``state()["save_error"]``; nothing is lost.
+        ``state()["save_error"]`` says why a file cannot be written (read-only, gone, no space); nothing is lost.
         """
         if self._file is None:
             return

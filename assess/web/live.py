@@ -77,7 +77,7 @@ class _State(NamedTuple):
 
 
 class LiveView:
-    """What the page of one session is told of each version of its workbook."""
+    """What the page of one session knows of each version of its workbook."""
 
     def __init__(self) -> None:
         self._lock = Lock()

@@ -1,4 +1,4 @@
-"""Another scale, another scenario, further pieces anchored: classes and routes beside the present ones.
+"""Another scale, another scenario, further pieces anchored: classes and routes next to the present ones.
 
 Nothing is written: the workbook as it is held is assessed anew with other settings, by the formulas.
 """

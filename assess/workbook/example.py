@@ -1,4 +1,4 @@
-"""A small inventory to learn from: two floors, every sheet in use, no files beside it.
+"""A small inventory to learn from: two floors, every sheet in use, no files next to it.
 
 All numbers are made up. They stand here in the SI headers' units and are converted where the headers are imperial.
 """

@@ -158,7 +158,7 @@ class Names:
         return spots
 
     def place_ways(self, signed: Sequence[tuple[str, Bounds]]) -> list[Label]:
-        """Return the names of segments beside their signs, where a name covers nothing else."""
+        """Return the names of segments next to their signs, where a name covers nothing else."""
         taken = [*self.held, *(box for _name, box in signed)]
         small = LINE * LINE * self.unit * self.unit / 20
         return [
@@ -171,7 +171,7 @@ class Names:
     def _place_each(
         self, named: Sequence[tuple[str, Bounds]], taken: Sequence[Bounds], names: Sequence[Bounds]
     ) -> list[Label | None]:
-        """Place each name beside its box, or farther off with a line to it; None where there is no room for it.
+        """Place each name next to its box, or farther off with a line to it; None where there is no room for it.
 
         `named` are names with the boxes of their pieces, the most important first; `taken` is what is to stay free,
         and `names` what no name may overlap [m].

@@ -197,7 +197,7 @@ def _list_panels(figure: Any, traced: Sequence[Traced]) -> Iterator[tuple[Any, T
 
 
 def _paint_convergences(traced: Sequence[Traced], z: float, is_long: bool, figure: Any) -> None:
-    """Paint the chance of each piece as motions are added, with the names of the classes beside the last."""
+    """Paint the chance of each piece as motions are added, with the names of the classes next to the last."""
     spaced = np.geomspace if is_long else np.linspace
     name = _("chance of overturning, by the motions so far")
     for at, (axes, one) in enumerate(_list_panels(figure, traced)):

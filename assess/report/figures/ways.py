@@ -19,7 +19,7 @@ SIGN = 6.0
 _ALONG = (0.5, 0.35, 0.65, 0.2, 0.8)
 """Where along a band its sign is tried."""
 _GROWN = 1.2
-"""Room that a sign takes over its own size, with the mark beside it."""
+"""Room that a sign takes over its own size, with the mark next to it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """The charts, all drawn from cells with formulas, so that an edit moves them.
 
-Each class has a pattern beside its colour, as a grey printer shows no more.
+Each class has a pattern next to its colour, as a grey printer shows no more.
 """
 
 import math
