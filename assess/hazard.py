@@ -191,7 +191,20 @@ def _read_sites(
     name: str, heading: Sequence[str], rows: Sequence[Line], comments: str, latitude: float | None,
     longitude: float | None,
 ) -> HazardCurve:  # fmt: skip
-    years, notes = _read_comment(comments)
+    imt, time, kind = (pattern.search(comments) for pattern in (_IMT, _TIME, _KIND))
+    if imt is not None and imt[1].strip() != "PGA":
+        raise InputError(fill("the curve is of {imt}, expected PGA", imt=imt[1].strip()[:40]))
+    text = "" if time is None else time[1]
+    years = float(text) if _NUMBER.fullmatch(text) else math.nan
+    if not 0 < years < math.inf:
+        raise InputError(fill("the first line has no investigation_time above 0, in years"))
+    if not SHORTEST_TIME <= years <= LONGEST_TIME:
+        raise InputError(fill(
+            "investigation_time is {years:g}, expected {least:g} to {most:g} years",
+            years=years, least=SHORTEST_TIME, most=LONGEST_TIME,
+        ))  # fmt: skip
+    of = "mean" if kind is None else kind[1].strip()
+    notes = [] if of == "mean" else [fill("the curve is {kind!r}, not the mean", kind=of[:40])]
     found = [(place, _LEVEL.fullmatch(cell)) for place, cell in enumerate(heading)]
     places = [place for place, match in found if match]
     levels = np.array([_read_number(match[1], rows[0][0], heading[place]) for place, match in found if match])
@@ -218,31 +231,12 @@ def _read_sites(
     if known.sum() < 2:
         raise InputError(fill("line {line}: fewer than two chances are between 0 and 1", line=line))
     if left_out:
-        note = nfill(
-            "{n} level whose chance is 0 or 1 was left out", "{n} levels whose chance is 0 or 1 were left out", left_out
-        )
-        notes = (*notes, note)
+        notes.append(nfill("{n} level whose chance is 0 or 1 was left out",
+                           "{n} levels whose chance is 0 or 1 were left out", left_out))  # fmt: skip
     return HazardCurve(
         file=name, pga=levels[known] * GRAVITY, rate=-np.log1p(-chances[known]) / years, latitude=site[0],
-        longitude=site[1], distance=distance, notes=notes,
+        longitude=site[1], distance=distance, notes=tuple(notes),
     )  # fmt: skip
-
-
-def _read_comment(comments: str) -> tuple[float, tuple[Text, ...]]:
-    imt, time, kind = (pattern.search(comments) for pattern in (_IMT, _TIME, _KIND))
-    if imt is not None and imt[1].strip() != "PGA":
-        raise InputError(fill("the curve is of {imt}, expected PGA", imt=imt[1].strip()[:40]))
-    text = "" if time is None else time[1]
-    years = float(text) if _NUMBER.fullmatch(text) else math.nan
-    if not 0 < years < math.inf:
-        raise InputError(fill("the first line has no investigation_time above 0, in years"))
-    if not SHORTEST_TIME <= years <= LONGEST_TIME:
-        spans = {"least": SHORTEST_TIME, "most": LONGEST_TIME}
-        raise InputError(
-            fill("investigation_time is {years:g}, expected {least:g} to {most:g} years", years=years, **spans)
-        )
-    of = "mean" if kind is None else kind[1].strip()
-    return years, () if of == "mean" else (fill("the curve is {kind!r}, not the mean", kind=of[:40]),)
 
 
 def _choose_site(

@@ -1,7 +1,5 @@
 """``assess study``: a part of the paper done again, on open data that comes along."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,7 +12,7 @@ from assess.settings import count_processors
 from assess.units import LENGTH
 
 if TYPE_CHECKING:
-    from assess.studies import Options, Study
+    pass
 
 ORDER = 7
 EXAMPLES = (
@@ -76,6 +74,7 @@ def command(
             raise InputError(f"--{option} is empty: name a folder, or leave out --{option}")
     target = Path(out)
     given = {"records": None if records is None else Path(records), "breadth": breadth, "height": height}
+    own: dict[str, Any] = {option: value for option, value in given.items() if value is not None}
     try:
         with show_progress() as progress:
             from assess.studies import PAGE, PARTS, Options, all_studies, build_page, check_folder, run_all, write_files
@@ -84,8 +83,21 @@ def command(
             chosen = [one for one in every if name.lower() in (one.name, ALL)]
             if not chosen:
                 raise InputError(f"{name!r} is an unknown study; expected one of: {NAMES}, {ALL}")
-            options = Options(out=target, runs=runs, seed=seed, jobs=jobs or count_processors())
-            options = _add_own(given, options, chosen, every)
+            for option, value in own.items():
+                if not any(option in one.takes for one in chosen):
+                    takers = ", ".join(one.name for one in every if option in one.takes)
+                    raise InputError(
+                        f"--{option} does not apply to {chosen[0].name}, only to {takers} and {ALL}: leave it out"
+                    )
+                if isinstance(value, float):
+                    check_size(option, value)
+                    own[option] = value * LENGTH["cm"]
+            options = Options(out=target, runs=runs, seed=seed, jobs=jobs or count_processors(), **own)
+            if options.breadth > options.height:
+                broad, high = (size / LENGTH["cm"] for size in (options.breadth, options.height))
+                raise InputError(f"--breadth is {broad:g} cm, expected at most the height, {high:g} cm")
+            if options.records is not None and options.records.resolve() == target.resolve():
+                raise InputError("--records and --out are the same folder: name another one for the files with --out")
             check_folder(target)
             findings = run_all(chosen, options, progress)
             if name.lower() == ALL:
@@ -100,24 +112,3 @@ def command(
 
         kept = f"finished parts are kept in {target / PARTS}; the same command continues from there"
         raise InterruptedWorkError(kept if (target / PARTS).is_dir() else "nothing was written") from None
-
-
-def _add_own(
-    given: Mapping[str, Path | float | None], options: "Options", chosen: "Sequence[Study]", every: "Sequence[Study]"
-) -> "Options":
-    """Return the options with those that the user gave; InputError if no chosen study uses one of them."""
-    own: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
-    for name, value in own.items():
-        if not any(name in one.takes for one in chosen):
-            takers = ", ".join(one.name for one in every if name in one.takes)
-            raise InputError(f"--{name} does not apply to {chosen[0].name}, only to {takers} and {ALL}: leave it out")
-        if isinstance(value, float):
-            check_size(name, value)
-            own[name] = value * LENGTH["cm"]
-    found = replace(options, **own)
-    if found.breadth > found.height:
-        breadth, height = (size / LENGTH["cm"] for size in (found.breadth, found.height))
-        raise InputError(f"--breadth is {breadth:g} cm, expected at most the height, {height:g} cm")
-    if found.records is not None and found.records.resolve() == found.out.resolve():
-        raise InputError("--records and --out are the same folder: name another one for the files with --out")
-    return found

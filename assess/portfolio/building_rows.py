@@ -133,6 +133,15 @@ def _describe_building(
     is_any_known = any(one.state is not RouteState.NOT_KNOWN and one.blocked is not None for one in routes.routes)
     people = [one for one in (count_people(routes, route) for route in routes.routes) if one is not None]
     low, high = (None, None) if sums.falls is None else find_ends(sums.falls)
+    on_site, ground = inventory.site_ground, find_ground(inventory)
+    shaken_by, pga, pgv, distance = "", ground.pga, ground.pgv, None
+    if site.ground_pga is None and site.sds is None and on_site is not None:
+        shaken_by, pga, pgv = on_site.kind, on_site.pga, on_site.pgv
+        distance = on_site.distance if shaken_by == "scenarios" else None
+    elif pga is not None and ground.shaking is not None:
+        shaken_by, pgv = "shaking", ground.shaking.pgv
+    elif pga is not None:
+        shaken_by = "sds" if ground.is_from_sds else "ground_pga"
 
     def expect(quantities: Mapping[str, int] | None) -> float | None:
         if quantities is None:
@@ -144,7 +153,10 @@ def _describe_building(
         "path": source.path, "status": "assessed", "inventory": origin.inventory, "origin": origin,
         "index": source.index, "site": site, "counts": counts, "results": results, "sums": sums,
         "use": spell_use(site.use),
-        **_describe_shaking(inventory),
+        "ground_source": shaken_by,
+        "ground_distance_km": None if distance is None else distance / 1000,
+        "ground_pga_g": None if pga is None else to_edge(pga, BUILDING.column("ground_pga").factor),
+        "ground_pgv_cm_s": None if pgv is None else to_edge(pgv, BUILDING.column("ground_pgv").factor),
         "own_motions": len({one.floor for one in results.motions if one.source in OWN_MOTIONS}),
         "largest_pfa_g": max((one.pfa_g for one in results.motions), default=None),
         "motion_uncertainty": results.provenance.uncertainty.motion if uses_scatter(results) else None,
@@ -162,24 +174,6 @@ def _describe_building(
         "people_blocked": sums.people_expected if is_any_known else None,
         "warnings": sum(one.severity == "warning" for one in results.problem_rows),
     }  # fmt: skip
-
-
-def _describe_shaking(inventory: Inventory) -> Record:
-    site, ground, building = inventory.site_ground, find_ground(inventory), inventory.building
-    source, pga, pgv, distance = "", ground.pga, ground.pgv, None
-    if building.ground_pga is None and building.sds is None and site is not None:
-        source, pga, pgv = site.kind, site.pga, site.pgv
-        distance = site.distance if source == "scenarios" else None
-    elif pga is not None and ground.shaking is not None:
-        source, pgv = "shaking", ground.shaking.pgv
-    elif pga is not None:
-        source = "sds" if ground.is_from_sds else "ground_pga"
-    return {
-        "ground_source": source,
-        "ground_distance_km": None if distance is None else distance / 1000,
-        "ground_pga_g": None if pga is None else to_edge(pga, BUILDING.column("ground_pga").factor),
-        "ground_pgv_cm_s": None if pgv is None else to_edge(pgv, BUILDING.column("ground_pgv").factor),
-    }
 
 
 def list_problems(path: str, problems: Sequence[Problem]) -> list[list[Any]]:
