@@ -636,7 +636,7 @@ def _list_formats(styles: Tree) -> list[str | None]:
 class Book:
     """An opened workbook; use it in a ``with`` statement.
 
-    `sheets` tells the parts of its worksheets by their names, in their order, and `sheet_ids` their numbers; `parts`
+    `sheets` tells the parts of its worksheets by their names, in their order; `parts`
     the parts that the workbook refers to, such as its calcChain, by kind. `archive` is the zip.
 
     `hidden` holds the names of those that are not shown, `changed` the parts that have other bytes now, None for one
@@ -656,12 +656,11 @@ class Book:
             _check_kind(types, book)
             links = self._links()
             self.parts = kinds = dict(links.values())
-            self.sheets, self.sheet_ids, self.hidden = dict[str, str](), dict[str, str](), set[str]()
+            self.sheets, self.hidden = dict[str, str](), set[str]()
             for one in book.find("sheet"):
                 link = next((value for name, value in one.items() if name.endswith(":id")), "")
                 if links.get(link, ("",))[0] == "worksheet":
                     self.sheets[one.get("name", "")] = links[link][1]
-                    self.sheet_ids[one.get("name", "")] = one.get("sheetId", "")
                     if one.get("state", "visible") != "visible":
                         self.hidden.add(one.get("name", ""))
             self._shared = _Shared(

@@ -89,7 +89,7 @@ def write_edits(book: Book, edits: Mapping[str, SheetEdits]) -> bytes:
     that a cell cannot hold.
     """
     check_sheets(book, list(edits))
-    formulas: list[tuple[str, str]] = []
+    has_moved = any(one.shifts for one in edits.values())
     problems: list[Problem] = []
     for sheet, one in edits.items():
         path = book.sheets[sheet]
@@ -98,14 +98,14 @@ def write_edits(book: Book, edits: Mapping[str, SheetEdits]) -> bytes:
         if one.values or one.results:
             patch = _SheetPatch(book, sheet, one)
             book.changed[path] = patch.write()
-            formulas += [(sheet, address) for address in patch.formulas]
+            has_moved = has_moved or patch.has_replaced
             problems += patch.problems
         if one.growth.blocks:
             _grow(book, sheet, one.growth)
     if problems:
         raise WorkbookError(problems)
     book.changed |= set_recalculation(book)
-    book.changed |= drop_from_chain(book, formulas, is_whole=any(one.shifts for one in edits.values()))
+    book.changed |= drop_chain(book) if has_moved else {}
     return _pack(book)
 
 
@@ -497,11 +497,14 @@ def check_value(place: Place, value: Value) -> Text | str:
 
 
 class _SheetPatch:
-    """Values and results of one sheet; `problems` tells what is refused, `formulas` what values replace."""
+    """Values and results of one sheet.
+
+    `problems` tells what is refused, `has_replaced` whether a value takes the place of a formula.
+    """
 
     def __init__(self, book: Book, sheet: str, edits: SheetEdits) -> None:
         self.sheet, path = sheet, book.sheets[sheet]
-        self.formulas, self.problems = list[str](), list[Problem]()
+        self.has_replaced, self.problems = False, list[Problem]()
         self.changes, self.results = self._by_row(edits.values), self._by_row(edits.results)
         numbers = sorted({*self.changes, *self.results})
         wanted = {one: {*self.changes.get(one, ()), *self.results.get(one, ())} for one in numbers}
@@ -593,7 +596,7 @@ class _SheetPatch:
     def _changed_cell(self, number: int, column: int, cell: Element, value: Value) -> bytes:
         formula = cell.part("f")
         if formula is not None:
-            self.formulas.append(f"{column_letters(column - 1)}{number}")
+            self.has_replaced = True
             if formula.attributes.get("t") == "shared" and "ref" in formula.attributes:
                 self._refuse((column, number), fill("its formula is shared by other cells."))
         return _write_cell(self.places.prefix, self._tag(number, column, cell, (b"t", b"cm", b"vm")), value)
@@ -710,45 +713,15 @@ def set_recalculation(book: Book) -> dict[str, bytes]:
     return {WORKBOOK: apply_edits(part.data, [(at, at, f'<{prefix}{colon}calcPr fullCalcOnLoad="1"/>'.encode())])}
 
 
-def drop_from_chain(book: Book, formulas: Sequence[tuple[str, str]], *, is_whole: bool) -> dict[str, bytes | None]:
-    """Return the parts that change when cells lose their formulas: the calculation chain loses their entries.
+def drop_chain(book: Book) -> dict[str, bytes | None]:
+    """Return the parts that change as the calculation chain goes, with what refers to it: Excel makes it anew.
 
-    A chain with an entry for a cell without a formula makes Excel repair the file. One that would be empty is left
-    out, with what refers to it, as is the whole one where formulas have moved: Excel makes it anew. An entry without a
-    sheet is on the sheet of the one before it.
+    A chain with an entry for a cell without a formula makes Excel repair the file.
     """
     path = book.parts.get("calcChain")
-    if path is not None and is_whole:
-        return {path: None, **_drop_references(book, path)}
-    if path is None or not formulas:
+    if path is None:
         return {}
-    part = book.read(SmallPart, path)
-    gone = {(book.sheet_ids[sheet], address) for sheet, address in formulas}
-    edits, kept = _edit_chain(part, gone)
-    if kept:
-        return {path: apply_edits(part.data, edits)} if edits else {}
-    return {path: None, **_drop_references(book, path)}
-
-
-def _edit_chain(part: SmallPart, gone: Collection[tuple[str, str]]) -> tuple[list[Edit], int]:
-    edits: list[Edit] = []
-    sheet = written = "0"
-    kept = 0
-    for one in part.named("c"):
-        sheet = one.attributes.get("i", sheet)
-        if (sheet, one.attributes.get("r", "")) in gone:
-            edits.append((one.start, one.end, b""))
-            continue
-        kept += 1
-        if "i" not in one.attributes and sheet != written:
-            tag = part.data[one.start : one.head]
-            edits.append((one.start, one.head, add_attribute(tag, f'i="{sheet}"'.encode())))
-        written = sheet
-    return edits, kept
-
-
-def _drop_references(book: Book, path: str) -> Mapping[str, bytes]:
-    changed = {}
+    changed: dict[str, bytes | None] = {path: None}
     for name, tag, attribute in ((TYPES, "Override", "PartName"), (RELATIONS, "Relationship", "Target")):
         part = book.read(SmallPart, name)
         found = [one for one in part.named(tag) if book.find_part("xl", one.attributes.get(attribute, "")) == path]
