@@ -67,8 +67,7 @@ def _of_methods() -> Iterator[tuple[str, str]]:
     from assess.motion.scenario import PROFILES, UNVERIFIED, VERIFIED
     from assess.results import MOTION_FLAGS, PIECE_FLAGS
     from assess.risk import RiskClass
-    from assess.route_results import FLAGS as ROUTE_FLAGS
-    from assess.route_results import RouteState
+    from assess.route_results import FLAGS as ROUTE_FLAGS, RouteState
     from assess.routes.widths import RULES
 
     for method in all_methods():

@@ -32,8 +32,7 @@ from assess.bim.ifc_model import check_installed, check_model, unreadable
 from assess.bim.model_process import run_apart
 from assess.details import DETAILS
 from assess.errors import ModelError
-from assess.i18n import fill
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _
 from assess.progress import Progress
 from assess.report import words
 from assess.resources import open_input

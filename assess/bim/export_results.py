@@ -13,8 +13,7 @@ from typing import Any
 from assess.compare.past_run import UNCONFIRMED, Part, PastPiece, PastRun, read_record
 from assess.details import DETAILS
 from assess.errors import InputError
-from assess.i18n import fill, ngettext
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _, ngettext
 from assess.intensity import SHAKINGS
 from assess.methods import simulation
 from assess.report import words

@@ -13,10 +13,8 @@ from assess.bim.ifc_model import check_installed, check_model, is_model, read_mo
 from assess.bim.import_workbook import ENDING, ImportedBuilding, describe
 from assess.bim.model_process import run_apart
 from assess.bim.model_rows import Drafts, list_building
-from assess.bim.roomplan import MOST_BYTES as MOST_OF_SCAN
-from assess.bim.roomplan import read_roomplan
-from assess.bim.sweet_home import HOME, OLD_HOME, read_sweet_home
-from assess.bim.sweet_home import MOST_BYTES as MOST_OF_HOME
+from assess.bim.roomplan import MOST_BYTES as MOST_OF_SCAN, read_roomplan
+from assess.bim.sweet_home import HOME, MOST_BYTES as MOST_OF_HOME, OLD_HOME, read_sweet_home
 from assess.errors import InputError, ModelError
 from assess.i18n import fill, load_catalogue, speaking, spoken
 from assess.progress import SILENT, Progress

@@ -10,7 +10,7 @@ from typing import Any
 from assess.cli.route_output import WIDE, describe_run, finite, say_motions, say_run, write_rows
 from assess.fragility import MOST_MISFIT, lognormal_chance
 from assess.i18n import count
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.piece_fragility import UNITS, FloorMotions, PieceFragilities, PieceFragility
 from assess.report import words
 from assess.report.interchange.exchange_files import LABELS, Exchange

@@ -18,8 +18,7 @@ from assess.compare.changes import (
     count_states,
 )
 from assess.compare.past_run import ANCHORED, BY_FORMULA, CLASSES, INPUTS, UNCONFIRMED, PastChance
-from assess.i18n import Text, fill, nfill, ngettext, number
-from assess.i18n import gettext as _
+from assess.i18n import Text, fill, gettext as _, nfill, ngettext, number
 from assess.progress import SILENT, Progress
 from assess.report import blocks, words
 from assess.report.data import building_key

@@ -41,7 +41,7 @@ from assess.errors import Problem, SettingsError
 from assess.i18n import Text, fill, join
 from assess.model import Inventory, Item
 from assess.motion.scenario import PGA_OF_SDS
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.known_ground import find_ground
 from assess.results import AnchorRow
 from assess.rocking.draws import PEAK

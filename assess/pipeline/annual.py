@@ -25,7 +25,7 @@ from assess.arrays import BoolArray, FloatArray
 from assess.fragility import fit_fragility
 from assess.hazard import HazardCurve
 from assess.i18n import Text, fill, nfill
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.known_ground import Ground, find_ground
 from assess.pipeline.verify import MOST_PAIRS, RockedLevels, Sweep
 from assess.progress import Progress

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.arrays import BoolArray
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.progress import SILENT, Progress
 from assess.results import Results, sum_falls
 from assess.route_results import RouteRow, RouteState, RouteTables

@@ -13,7 +13,7 @@ from assess.errors import WorkbookError
 from assess.i18n import gettext
 from assess.methods import ALIKE, Cases, adopted_formula, paper_formula
 from assess.model import AXES, Inventory, Item
-from assess.pipeline.assessment import find_can_rock
+from assess.pipeline.adopt import find_can_rock
 from assess.pipeline.demand import Demand, build_demands
 from assess.pipeline.known_ground import find_ground
 from assess.pipeline.verify import find_peak

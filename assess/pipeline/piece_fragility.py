@@ -24,7 +24,7 @@ from assess.errors import InputError
 from assess.fragility import Fragility, fit_fragility
 from assess.i18n import Text, fill
 from assess.model import AXES, Axis, Item
-from assess.pipeline.assessment import Assessment, is_square
+from assess.pipeline.adopt import Assessment, is_square
 from assess.pipeline.demand import Demand
 from assess.pipeline.verify import RockedLevels, Sweep, choose_motions
 from assess.progress import SILENT, Progress

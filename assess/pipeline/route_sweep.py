@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from assess.errors import InputError
 from assess.methods import Ensemble
 from assess.model import AXES
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.ensembles import DrawnEnsemble, GeneratedEnsemble
 from assess.pipeline.verify import RockedLevels, Sweep, choose_motions
 from assess.progress import SILENT, Progress

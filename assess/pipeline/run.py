@@ -17,8 +17,7 @@ from assess.errors import InputError, OutputError
 from assess.i18n import fill
 from assess.methods import NO_WALL, SIDE_UNKNOWN, Cases, Method, all_methods, simulation
 from assess.model import AXES, Inventory
-from assess.pipeline.anchors import anchor_first, anchor_named, find_held, find_spread, spell_names
-from assess.pipeline.assessment import (
+from assess.pipeline.adopt import (
     UNCONFIRMED,
     Assessment,
     adopt,
@@ -27,6 +26,7 @@ from assess.pipeline.assessment import (
     find_ruling,
     unite_axes,
 )
+from assess.pipeline.anchors import anchor_first, anchor_named, find_held, find_spread, spell_names
 from assess.pipeline.city_draws import check_draws, find_earthquakes, number_pieces
 from assess.pipeline.demand import Demand, Demands, build_demands, scale_demands
 from assess.pipeline.remarks import remark

@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 
 from assess.errors import CancelledError
 from assess.methods import Cases
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.demand import Demand
 from assess.progress import SILENT, Progress
 from assess.results import ItemResult

@@ -16,8 +16,8 @@ from assess.model import AXES, Item
 from assess.motion.record import treatment
 from assess.motion.scenario import PROFILES
 from assess.motion.spatial_field import SCATTERS
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.anchors import build_anchors
-from assess.pipeline.assessment import Assessment
 from assess.pipeline.demand import Demand, find_shaking, find_site
 from assess.pipeline.remarks import remark_on_shaking
 from assess.results import (

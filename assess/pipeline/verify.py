@@ -21,8 +21,8 @@ from assess.model import Inventory
 from assess.motion.assumed import RATIO_SCATTER
 from assess.motion.floor_medians import SCATTER
 from assess.motion.target_fit import measure_peaks
+from assess.pipeline.adopt import Assessment, adopt, build_falls, find_governing, find_ruling, unite_axes
 from assess.pipeline.anchors import find_held
-from assess.pipeline.assessment import Assessment, adopt, build_falls, find_governing, find_ruling, unite_axes
 from assess.pipeline.city_draws import number_building
 from assess.pipeline.demand import Demand, Demands
 from assess.pipeline.ensembles import FloorEnsemble, SuiteEnsemble, build_ensembles

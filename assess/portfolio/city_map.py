@@ -14,8 +14,7 @@ from typing import Any, cast
 import numpy as np
 
 from assess.errors import InputError
-from assess.i18n import fill, number
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _, number
 from assess.motion.site_ground import GroundField
 from assess.portfolio.background import Background, Place
 from assess.portfolio.city import City, Row

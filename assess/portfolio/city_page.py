@@ -16,8 +16,7 @@ from typing import Any, NamedTuple
 
 from assess.delivery.folders import private_folder
 from assess.environment import find_source_date
-from assess.i18n import Text, fill, ngettext, number
-from assess.i18n import gettext as _
+from assess.i18n import Text, fill, gettext as _, ngettext, number
 from assess.intensity import name_mmi
 from assess.portfolio import city_words as say
 from assess.portfolio.background import Background

@@ -4,8 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import PurePath
 
 from assess.hazard import FAR
-from assess.i18n import Text, fill, ngettext, number
-from assess.i18n import gettext as _
+from assess.i18n import Text, fill, gettext as _, ngettext, number
 from assess.methods import adopted_formula
 from assess.motion.ground_scenarios import FAR_CAUTION
 from assess.motion.spatial_field import SCATTERS, Measure

@@ -10,8 +10,7 @@ from typing import Any
 
 from assess.delivery.folders import private_folder
 from assess.environment import find_source_date
-from assess.i18n import fill
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _
 from assess.portfolio import city_words as say
 from assess.portfolio.city import BUILDING_RULE, TYPE_RULE, City, Group, Row
 from assess.portfolio.city_map import find_share, sign_of_class

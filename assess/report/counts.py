@@ -3,8 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from assess.i18n import gettext as _
-from assess.i18n import ngettext, number
+from assess.i18n import gettext as _, ngettext, number
 from assess.report import words
 from assess.results import ItemResult, count_pieces, sum_falls
 from assess.risk import RiskClass, find_ends

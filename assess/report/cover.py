@@ -2,8 +2,7 @@
 
 from dataclasses import replace
 
-from assess.i18n import gettext as _
-from assess.i18n import ngettext
+from assess.i18n import gettext as _, ngettext
 from assess.report import words
 from assess.report.blocks import Block, Contents, Document, Image, Paragraph, Runs, Section, Span, Title, Words, strong
 from assess.report.embedded import embed_logo

@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from assess.fields import MOTION_FIELDS, item_fields, route_fields
-from assess.i18n import gettext as _
-from assess.i18n import number
+from assess.i18n import gettext as _, number
 from assess.report import words
 from assess.report.blocks import Cell, Column, Runs, Span, Table, Words, join_words, note, table
 from assess.report.say.ground import describe_origin, describe_source

@@ -6,8 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from assess.environment import find_source_date
-from assess.i18n import LANGUAGES, spoken
-from assess.i18n import gettext as _
+from assess.i18n import LANGUAGES, gettext as _, spoken
 
 if TYPE_CHECKING:
     from assess.methods import Reference

@@ -3,8 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 
-from assess.i18n import gettext as _
-from assess.i18n import ngettext, number
+from assess.i18n import gettext as _, ngettext, number
 from assess.pipeline.anchors import BRACKET
 from assess.report import words
 from assess.report.say import ground

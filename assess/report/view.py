@@ -7,8 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
 from typing import Any, Literal
 
-from assess.i18n import gettext as _
-from assess.i18n import ngettext
+from assess.i18n import gettext as _, ngettext
 from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.blocks import Block, Inline, Paragraph, Section, Span

@@ -4,8 +4,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from assess.i18n import Text, fill, ngettext, number
-from assess.i18n import gettext as _
+from assess.i18n import Text, fill, gettext as _, ngettext, number
 from assess.model import SCANNED
 from assess.results import CANNOT_ROCK, ItemResult
 from assess.risk import LIMITS, RiskClass, classify

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from assess.errors import Gap, Problem
 from assess.model import Inventory
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.demand import serve_floors
 from assess.pipeline.run import compute
 from assess.settings import SCENARIOS, Settings

@@ -18,7 +18,7 @@ from assess.errors import AssessError, Gap, Problem
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.methods import Method, adopted_formula, paper_formula
 from assess.model import AXES, Inventory
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.risk import RiskClass, classify_all
 from assess.units import GRAVITY, LENGTH, VELOCITY
 from assess.web.evaluation import Evaluation, evaluate, list_floors

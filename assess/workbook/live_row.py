@@ -93,7 +93,7 @@ def _write_classes(cells: Mapping[str, str], own: Mapping[str, str]) -> dict[str
 def _can_rock(cells: Mapping[str, str], own: Mapping[str, str]) -> str:
     """Expression for whether the strongest motion that may be drawn can start it: PFA e^(3 s) >= 0.65 g b/z.
 
-    s is as in `assess.pipeline.assessment.find_can_rock`. One that is too stocky never rocks. Where either axis serves
+    s is as in `assess.pipeline.adopt.find_can_rock`. One that is too stocky never rocks. Where either axis serves
     the larger PFA counts, though the motion of the larger PFV governs: a row is then never lower than in a run.
     """
     ratio, pfa, *_ = (cells[label] for label in LIVE)

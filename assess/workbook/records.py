@@ -17,14 +17,12 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any
 
 from assess.errors import InputError, Problem, RecordError
-from assess.hazard import HazardCurve, parse_hazard
-from assess.hazard import read_bytes as read_hazard_bytes
+from assess.hazard import HazardCurve, parse_hazard, read_bytes as read_hazard_bytes
 from assess.i18n import fill, join, nfill
 from assess.model import AXES, NEAR_AXIS, Axis, FloorRecord, angle_between, split_names
 from assess.motion.formats import is_archive, parse_records, read_bytes, select
 from assess.motion.record import Record
-from assess.motion.shakemap import ShakeMap, name_uncertainty, parse_shakemap
-from assess.motion.shakemap import read_file as read_grid_file
+from assess.motion.shakemap import ShakeMap, name_uncertainty, parse_shakemap, read_file as read_grid_file
 from assess.motion.site_ground import GroundField, SiteGround
 from assess.progress import Progress
 from assess.workbook.habits import CellError, shorten

@@ -17,7 +17,7 @@ FLOORS, ITEMS, AIM = 60, 2000, 5
 TIMED = """
 import json, sys, time
 import assess
-from assess.pipeline import assessment
+from assess.pipeline import adopt
 from assess.routes import evaluate, obstructions
 spent = []
 def timed(module, name):
@@ -29,7 +29,7 @@ def timed(module, name):
         return found
     setattr(module, name, work)
 timed(obstructions, "find_obstructions")
-timed(assessment, "build_falls")
+timed(adopt, "build_falls")
 timed(evaluate, "evaluate_routes")
 timed(obstructions, "find_route_problems")
 start = time.perf_counter()

@@ -11,8 +11,7 @@ import ifcopenshell
 import ifcopenshell.guid
 import ifcopenshell.validate
 import pytest
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 from ifcopenshell.util.element import get_psets
 
 from assess.bim.export_files import LONGEST_LABEL, append_lines, make_global_id, write_label, write_real

@@ -8,8 +8,7 @@ from threading import Event
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from assess.bim.import_workbook import ImportedBuilding, build_workbook
 from assess.bim.read_source import read_source

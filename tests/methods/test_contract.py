@@ -6,8 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from assess.i18n import placeholders
 from assess.methods import FACTS, Cases, Method, Outcome, adopted_formula, all_methods, paper_formula, simulation

@@ -6,8 +6,7 @@ from assess.errors import RecordError
 from assess.motion.formats import cosmos
 from assess.motion.record import Record
 from assess.units import GRAVITY
-from tests.motion.writers import EAST, NORTH, THREE, UP
-from tests.motion.writers import cosmos as write
+from tests.motion.writers import EAST, NORTH, THREE, UP, cosmos as write
 
 DATA = write(EAST)
 

@@ -10,10 +10,16 @@ from assess.errors import RecordError
 from assess.motion.formats import csmip
 from assess.motion.record import Record
 from assess.units import GRAVITY
-from tests.motion.writers import EAST, NORTH, THREE, Signal, wave
-from tests.motion.writers import csmip_v1 as write_v1
-from tests.motion.writers import csmip_v1_pairs as write_pairs
-from tests.motion.writers import csmip_v2 as write_v2
+from tests.motion.writers import (
+    EAST,
+    NORTH,
+    THREE,
+    Signal,
+    csmip_v1 as write_v1,
+    csmip_v1_pairs as write_pairs,
+    csmip_v2 as write_v2,
+    wave,
+)
 
 DEAD = Signal(np.zeros(400), 90.0, 2)
 V1, PAIRS, V2 = write_v1(EAST), write_pairs(EAST), write_v2(EAST)

@@ -5,8 +5,7 @@ import pytest
 from assess.errors import RecordError
 from assess.motion.formats import esm
 from assess.motion.record import Record
-from tests.motion.writers import UP
-from tests.motion.writers import esm as write
+from tests.motion.writers import UP, esm as write
 
 
 def read_one(data: bytes) -> Record:

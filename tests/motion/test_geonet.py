@@ -6,8 +6,7 @@ import pytest
 from assess.errors import RecordError
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.motion.formats import geonet
-from tests.motion.writers import EAST, THREE, Signal, wave
-from tests.motion.writers import geonet as write
+from tests.motion.writers import EAST, THREE, Signal, geonet as write, wave
 
 
 @pytest.mark.parametrize("corrected", [False, True])

@@ -6,8 +6,7 @@ import pytest
 from assess.errors import RecordError
 from assess.motion.formats import knet
 from assess.motion.record import Record, treat
-from tests.motion.writers import EAST, SCALE
-from tests.motion.writers import knet as write
+from tests.motion.writers import EAST, SCALE, knet as write
 
 
 def read_one(data: bytes) -> Record:

@@ -7,8 +7,7 @@ import pytest
 
 from assess.errors import RecordError
 from assess.motion.formats import miniseed
-from tests.motion.writers import EAST, THREE, Signal
-from tests.motion.writers import mseed as write
+from tests.motion.writers import EAST, THREE, Signal, mseed as write
 
 
 def test_channels() -> None:

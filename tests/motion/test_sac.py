@@ -11,8 +11,7 @@ from assess.errors import RecordError
 from assess.motion.formats import sac
 from assess.motion.record import Record
 from assess.units import GRAVITY
-from tests.motion.writers import EAST, UP
-from tests.motion.writers import sac as write
+from tests.motion.writers import EAST, UP, sac as write
 
 
 def read_one(data: bytes) -> Record:

@@ -1,8 +1,7 @@
 """The profiles of codes: what holds of all of them."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from assess.motion.scenario import PROFILES, UNVERIFIED
 from assess.settings import SCENARIOS

@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 from eqsig import sdof
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from assess.arrays import FloatArray
 from assess.motion.rows import run_rows

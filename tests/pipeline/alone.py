@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.verify import choose_motions
 from assess.rocking.draws import draw_bodies, name_number
 from assess.rocking.ensemble import rock_blocks

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from assess.methods import Cases, Outcome, adopted_formula, all_methods, paper_formula, simulation
-from assess.pipeline.assessment import Adoption, adopt, choose_items, find_governing
+from assess.pipeline.adopt import Adoption, adopt, choose_items, find_governing
 from assess.results import BASES
 from assess.risk import RiskClass, classify, wilson_interval
 from assess.settings import Settings

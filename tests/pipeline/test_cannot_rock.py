@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from assess.pipeline.assessment import find_can_rock
+from assess.pipeline.adopt import find_can_rock
 from assess.pipeline.run import compute
 from assess.risk import RiskClass
 from assess.rocking.block import stocky_limit

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import assess
-from assess.pipeline.assessment import is_square, unite_axes
+from assess.pipeline.adopt import is_square, unite_axes
 from assess.pipeline.run import compute
 from assess.risk import wilson_interval
 from assess.settings import Settings

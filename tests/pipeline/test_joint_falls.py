@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from assess.methods import simulation
-from assess.pipeline.assessment import build_falls
+from assess.pipeline.adopt import build_falls
 from assess.pipeline.run import build_results, compute
 from assess.settings import Settings
 from tests.pipeline.rows import read_sheets

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import assess
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.piece_fragility import find_piece_fragilities
 from assess.pipeline.run import compute
 from assess.pipeline.verify import choose_motions

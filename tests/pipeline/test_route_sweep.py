@@ -11,7 +11,7 @@ import pytest
 
 import assess
 from assess.pipeline import verify
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.route_sweep import FINEST, JUMP, MOST_INSERTED, find_fragility, find_jumps, find_passing
 from assess.pipeline.run import build_results, compute
 from assess.settings import Settings

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from assess.pictures import PictureError
-from assess.plans import read_plan
-from assess.plans import svg as svg_file
+from assess.plans import read_plan, svg as svg_file
 from assess.plans.linework import unpack
 from tests.plans.drawings import PLAN_SVG, read_apart, svg
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import assess
 from assess.fragility import fit_fragility
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.piece_fragility import UNITS, By, Measure, PieceFragilities, find_piece_fragilities
 from assess.pipeline.run import compute
 

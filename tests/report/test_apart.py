@@ -14,8 +14,7 @@ from assess.results import BASES
 from assess.risk import RiskClass
 from assess.settings import Settings
 from tests.report.reading import render
-from tests.shaking import RECORDS as SHAKING
-from tests.shaking import write_record
+from tests.shaking import RECORDS as SHAKING, write_record
 from tests.workbooks import RECORDS, write
 
 FLOORS = [

@@ -5,8 +5,7 @@ import io
 import re
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from assess.report.data import disarm, write_csv
 from tests.cli.calling import run

@@ -5,8 +5,7 @@ from itertools import pairwise, permutations
 
 import numpy as np
 import shapely
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from assess.routes.chances import to_array, to_sets
 from assess.routes.obstructions import Gaps, find_obstructions

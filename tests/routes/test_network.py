@@ -2,8 +2,7 @@
 
 import networkx as nx
 import numpy as np
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from assess.routes.chances import to_array, to_sets
 from assess.routes.network import Part, build_course, find_parts, find_rooms, find_ways

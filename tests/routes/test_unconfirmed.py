@@ -1,8 +1,7 @@
 """Pieces whose chance is not confirmed: each counts as standing and as fallen, and what differs is not known."""
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from assess.route_results import RouteState
 from tests.routes.buildings import evaluated, make_falls, one_segment, piece, place, stretch, told

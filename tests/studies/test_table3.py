@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from assess.methods import Cases, all_methods
 from assess.methods.kaneko_hayashi import METHOD as KANEKO_HAYASHI

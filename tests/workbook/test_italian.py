@@ -18,8 +18,7 @@ from assess.workbook.read import read_inventory
 from assess.workbook.schema import LISTS, LIVE, SHEETS, WORKINGS
 from assess.workbook.template import describe
 from tests.motion.writers import zipped
-from tests.workbook.books import Sheet as Rows
-from tests.workbook.books import errors_of, problems_of, remarks, write_book
+from tests.workbook.books import Sheet as Rows, errors_of, problems_of, remarks, write_book
 
 ITALIAN = [translate(sheet, "it") for sheet in SHEETS]
 NAMES = [sheet.name for sheet in SHEETS]

@@ -17,8 +17,7 @@ from assess.workbook.lists import PLACES
 from assess.workbook.schema import LIVE
 from assess.workbook.template import Units
 from tests.recalculate import libreoffice_all, needs_libreoffice, same
-from tests.workbook import test_live as live
-from tests.workbook import test_live_ground as ground
+from tests.workbook import test_live as live, test_live_ground as ground
 from tests.workbook.test_live import ITEMS_AT, POISON, by_formualizer, fill, poison
 
 pytestmark = [

@@ -2,8 +2,7 @@
 
 import assess
 from assess.workbook.names import find_near_name
-from tests.workbook.books import errors_of, remarks
-from tests.workbook.books import write as write_cells
+from tests.workbook.books import errors_of, remarks, write as write_cells
 from tests.workbooks import write
 
 

@@ -12,8 +12,7 @@ from xml.etree import ElementTree
 
 import pytest
 import xlsxwriter
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from assess.errors import WorkbookError
 from assess.model import Inventory

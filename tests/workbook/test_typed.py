@@ -5,8 +5,7 @@ from pathlib import Path
 
 import openpyxl
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from assess.errors import Correction
 from assess.units import GRAVITY, QUANTITIES

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.i18n import gettext as _
-from assess.i18n import ngettext, number
+from assess.i18n import gettext as _, ngettext, number
 from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.blocks import Figure

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from assess.errors import InputError
 from assess.i18n import Text
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.piece_fragility import UNITS, PieceFragilities, PieceFragility
 from assess.text import plain_line
 from assess.units import LENGTH

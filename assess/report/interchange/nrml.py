@@ -20,7 +20,7 @@ import numpy as np
 
 from assess.errors import InputError
 from assess.i18n import Text, fill
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.known_ground import find_ground
 from assess.pipeline.piece_fragility import PieceFragilities, PieceFragility
 from assess.report.interchange import exchange_files as files

@@ -22,7 +22,7 @@ from typing import Any
 
 from assess.fragility import MOST_MISFIT
 from assess.i18n import fill
-from assess.pipeline.assessment import Assessment
+from assess.pipeline.adopt import Assessment
 from assess.pipeline.piece_fragility import PieceFragilities
 from assess.report.interchange import exchange_files as files
 from assess.text import plain_line

@@ -10,8 +10,7 @@ from typing import Any
 from markupsafe import Markup
 
 from assess.errors import Problem
-from assess.i18n import fill
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _
 from assess.progress import SILENT, Progress
 from assess.report.blocks import Document
 from assess.report.content import Content

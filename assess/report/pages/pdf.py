@@ -14,8 +14,7 @@ from typing import IO
 
 from assess.delivery.folders import private_folder
 from assess.errors import AssessError, PdfUnavailableError, Problem
-from assess.i18n import fill
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _
 from assess.progress import ASKED_EVERY, SILENT, Progress
 from assess.report.content import Content
 from assess.report.fonts import find_missing, find_nowhere, print_fonts, replace_signs

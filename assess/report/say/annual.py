@@ -5,8 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from assess.annual_results import AnnualRow, AnnualTables
-from assess.i18n import gettext as _
-from assess.i18n import ngettext, number
+from assess.i18n import gettext as _, ngettext, number
 from assess.report.say.piece import describe
 from assess.results import ItemResult, Results
 from assess.text import natural_key

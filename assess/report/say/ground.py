@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from assess.i18n import fill, ngettext, number
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _, ngettext, number
 from assess.intensity import RATIO, Shaking, name_mmi
 from assess.model import AXES
 from assess.report import words

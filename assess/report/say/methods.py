@@ -5,8 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain, zip_longest
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from assess.i18n import gettext as _
-from assess.i18n import ngettext, number, placeholders
+from assess.i18n import gettext as _, ngettext, number, placeholders
 from assess.report import words
 from assess.results import ItemResult, Results
 from assess.risk import RiskClass, classify

@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from assess.i18n import gettext as _
-from assess.i18n import ngettext
+from assess.i18n import gettext as _, ngettext
 from assess.report import words
 from assess.results import ItemResult, count_pieces
 from assess.risk import RiskClass

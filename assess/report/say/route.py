@@ -3,8 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from assess.i18n import gettext as _
-from assess.i18n import nfill, ngettext, number
+from assess.i18n import gettext as _, nfill, ngettext, number
 from assess.report import words
 from assess.report.provenance import say_reference
 from assess.results import Results

@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from assess.i18n import fill, ngettext, number
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _, ngettext, number
 from assess.model import SCANNED
 from assess.report import words
 from assess.report.provenance import say_reference

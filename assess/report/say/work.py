@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 from assess.details import LEAST_FIXINGS
 from assess.fields import schedule_fields
-from assess.i18n import fill, ngettext, number
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _, ngettext, number
 from assess.report import words
 from assess.results import ItemResult, Results, count_pieces
 from assess.risk import RiskClass

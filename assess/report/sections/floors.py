@@ -2,8 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from assess.i18n import fill, ngettext, number
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _, ngettext, number
 from assess.model import AXES
 from assess.report import blocks, words
 from assess.report.content import FloorPage

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from assess.i18n import fill, ngettext, number
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _, ngettext, number
 from assess.report import blocks, statements, words
 from assess.report.figures.draw import build_figure
 from assess.report.figures.motion_figures import draw_motion, get_acceleration

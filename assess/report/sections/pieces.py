@@ -4,8 +4,7 @@ import unicodedata
 from collections.abc import Sequence
 from itertools import groupby
 
-from assess.i18n import fill, ngettext, number
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _, ngettext, number
 from assess.report import blocks, words
 from assess.report.page_columns import PageColumn, build_table, mark
 from assess.report.say.methods import find_disagreements

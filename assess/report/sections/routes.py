@@ -3,8 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple, TypeVar
 
-from assess.i18n import fill, ngettext
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _, ngettext
 from assess.report import blocks, words
 from assess.report.page_columns import PageColumn, flags, route_columns, say_flag
 from assess.report.say import route

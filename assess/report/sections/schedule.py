@@ -5,8 +5,7 @@ from itertools import groupby
 
 from assess.details import DETAILS
 from assess.fields import schedule_fields
-from assess.i18n import fill, number
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _, number
 from assess.report import blocks, words
 from assess.report.page_columns import mark
 from assess.report.say import work as say

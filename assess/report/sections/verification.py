@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from assess.annual_results import YEARS
-from assess.i18n import fill, ngettext, number
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _, ngettext, number
 from assess.report import blocks, words
 from assess.report.figures.motion_figures import draw_traced
 from assess.report.figures.risk_map import draw_contours

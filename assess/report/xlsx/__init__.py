@@ -12,8 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from assess.i18n import fill
-from assess.i18n import gettext as _
+from assess.i18n import fill, gettext as _
 from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.content import Content, report_date

@@ -12,8 +12,7 @@ from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name
 
-from assess.i18n import gettext as _
-from assess.i18n import ngettext
+from assess.i18n import gettext as _, ngettext
 from assess.report import words
 from assess.report.content import Content
 from assess.report.say import route
