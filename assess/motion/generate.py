@@ -28,8 +28,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d
 
 from assess.arrays import FloatArray, Single
 from assess.motion.noise import Phases, Transforms, draw_noise, find_rates
@@ -221,7 +221,7 @@ def find_corrections(target: Target, recipe: Recipe, motions: Single, run: Run) 
             continue
         if kind == REST and np.abs(errors).max() < ENOUGH:
             continue
-        is_left = _widest(np.abs(errors), 2 * AROUND + 1) > LEFT
+        is_left = maximum_filter1d(np.abs(errors), 2 * AROUND + 1, mode="nearest") > LEFT
         watched = np.flatnonzero(near & (is_left if kind == REST else (periods < DIVIDED) == (kind == SHORT)))
         if watched.size:
             found += _correct(target, recipe.grid, motions, run, sweep, watched, errors)
@@ -244,7 +244,7 @@ def _correct(
     errors[places] = np.log(target.pseudo[places] / mean)
     off = np.zeros(errors.size)
     off[places] = np.abs(errors[places])
-    chosen = np.flatnonzero((off > WITHIN) & (off == _widest(off, APART)))
+    chosen = np.flatnonzero((off > WITHIN) & (off == maximum_filter1d(off, APART, mode="nearest")))
     if not chosen.size:
         return []
     most, own = np.log(MOST_CORRECTED), np.searchsorted(places, chosen)
@@ -255,10 +255,6 @@ def _correct(
     )  # fmt: skip
     run(lambda rows: correction.add(motions[rows], peaks[rows, own], when[rows, own]), len(motions))
     return [correction]
-
-
-def _widest(off: FloatArray, width: int) -> FloatArray:
-    return np.asarray(sliding_window_view(np.pad(off, width // 2, mode="edge"), width).max(axis=1))
 
 
 def _pfa(motions: Single) -> FloatArray:
