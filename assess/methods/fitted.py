@@ -56,10 +56,6 @@ Powers = tuple[int, int]
 
 PREFIX = "fitted_"
 """How the key of every such method begins."""
-LAST = 1000
-"""Place in the order of reports: after all published methods."""
-LONGEST = 40
-"""Characters of what a model was fitted on in its title, which heads columns."""
 
 
 def expand(base: Base, powers: Sequence[Powers], x: FloatArray, y: FloatArray) -> list[FloatArray]:
@@ -204,7 +200,7 @@ def build_method(model: Fitted, source: str) -> Method:
             fill("R = {total}, PFA in cm/s²", total=write_sum(formula.base, formula.powers, "(B/H)", "PFA")),
             *(_write_numbers(letters[at : at + 3], numbers[at : at + 3]) for at in range(0, len(numbers), 3)),
         )
-    data = fitted.data.partition(", ")[0]
+    data = fitted.data.partition(", ")[0]  # the title heads columns
     errors = fill(
         "Fitted to computed chances on {data}; where a building is left out of the fit, the error for it is "
         "{error:.3f} (root mean square, standard error {spread:.3f}); a constant, the mean chance of the other "
@@ -216,9 +212,9 @@ def build_method(model: Fitted, source: str) -> Method:
         title=fill(
             "{name} (fitted on {data})",
             name=model.title,
-            data=data if len(data) <= LONGEST else f"{data[: LONGEST - 1]}…",
+            data=data if len(data) <= 40 else f"{data[:39]}…",
         ),
-        short_title=model.title, kind="probability", order=LAST, predicts=BY_SIZE if is_probit else BY_RATIO,
+        short_title=model.title, kind="probability", order=1000, predicts=BY_SIZE if is_probit else BY_RATIO,
         reference=Reference(title=model.title, source=source, remark=join(" ", (errors, verdict))),
         needs=frozenset({"breadth", "height", "pfa", *(("pfv",) if is_probit else ())}),
         valid={

@@ -107,29 +107,25 @@ def turning_pfa(B_H: Any) -> Any:
     return (c + f / B_H) / (-2 * e)
 
 
-def _unclipped(B_H: Any, PFA: Any) -> Any:
+def _held(B_H: Any, PFA: Any) -> Any:
     """Equation (9) with departures 1 and 2."""
     B_H_used = np.maximum(B_H, turning_breadth_to_height(PFA))
     return _eq9(B_H_used, np.minimum(PFA, turning_pfa(B_H_used)))
-
-
-def _clip(OR: Any) -> Any:
-    return np.maximum(0.0, np.minimum(1.0, OR))
 
 
 @np.errstate(all="ignore")
 def evaluate(cases: Cases, settings: Settings) -> Outcome:
     """Evaluate equation (9) with its departures; `raw` is without them."""
     B_H, PFA = cases.breadth_to_height, cases.pfa / ACCELERATION["cm/s2"]
-    B_H_star, unclipped = turning_breadth_to_height(PFA), _unclipped(B_H, PFA)
-    value = _clip(unclipped)
+    B_H_star, held = turning_breadth_to_height(PFA), _held(B_H, PFA)
+    value = np.maximum(0.0, np.minimum(1.0, held))
     known = ~np.isnan(value)
     inside = CHECKED_BREADTH_TO_HEIGHT.holds(B_H) & CHECKED_PFA.holds(cases.pfa / ACCELERATION["g"])
     flags = {
         "extrapolated": known & ~inside,
         "held": turning_pfa(np.maximum(B_H, B_H_star)) < PFA,
         "thin": B_H_star > B_H,
-        "clipped": known & (value != unclipped),
+        "clipped": known & (value != held),
     }
     return Outcome(value, {"raw": _eq9(B_H, PFA)}, flags)
 
@@ -137,7 +133,7 @@ def evaluate(cases: Cases, settings: Settings) -> Outcome:
 def live(cells: LiveCells) -> Mapping[str, Any]:
     """Return the value and equation (9) as printed."""
     B_H, PFA = cells.breadth_to_height, cells.pfa_g * G
-    return {"value": _clip(_unclipped(B_H, PFA)), "raw": _eq9(B_H, PFA)}
+    return {"value": np.maximum(0.0, np.minimum(1.0, _held(B_H, PFA))), "raw": _eq9(B_H, PFA)}
 
 
 def steps(example: Example) -> list[Text]:

@@ -37,6 +37,7 @@ from assess.motion.bands import find_common, meet_peaks, split_bands
 from assess.motion.kept import Kept
 from assess.motion.rows import GROUP, make_groups
 from assess.motion.target import Grid
+from assess.motion.target_fit import measure_peaks
 from assess.progress import Progress
 
 DAMPING = 0.05
@@ -134,8 +135,6 @@ def shake_record(
 
     The beams are the same whatever the seed of a run.
     """
-    from assess.motion.target_fit import measure_peaks
-
     ground = np.tile(acceleration.astype(np.float32), (PASSED, 1))
     alphas = building.draw_alphas(0, 0, PASSED)
     places = draw_places(0, 0, PASSED) if place is None else np.full(PASSED, place)

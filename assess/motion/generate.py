@@ -217,7 +217,7 @@ def find_corrections(target: Target, recipe: Recipe, motions: Single, run: Run) 
     found: list[Bending | Correction] = []
     for kind in STEPS:
         if kind == BEND:
-            found.append(_bend(motions, _pfa(motions), target.pfa, run, most=LAST_BENT))
+            found.append(_bend(motions, np.abs(motions).max(axis=1).astype(float), target.pfa, run, most=LAST_BENT))
             continue
         if kind == REST and np.abs(errors).max() < ENOUGH:
             continue
@@ -226,7 +226,7 @@ def find_corrections(target: Target, recipe: Recipe, motions: Single, run: Run) 
         if watched.size:
             found += _correct(target, recipe.grid, motions, run, sweep, watched, errors)
     recipe = replace(recipe, steps=recipe.steps + tuple(found))
-    recipe = replace(recipe, lift=target.pfa / float(_pfa(motions).mean()))
+    recipe = replace(recipe, lift=target.pfa / float(np.abs(motions).max(axis=1).mean(dtype=float)))
     run(lambda rows: lift_rows(motions[rows], recipe.lift), len(motions))
     return recipe
 
@@ -255,10 +255,6 @@ def _correct(
     )  # fmt: skip
     run(lambda rows: correction.add(motions[rows], peaks[rows, own], when[rows, own]), len(motions))
     return [correction]
-
-
-def _pfa(motions: Single) -> FloatArray:
-    return np.asarray(np.maximum(motions.max(axis=1), -motions.min(axis=1)), np.float64)
 
 
 CALIBRATED = 100

@@ -216,11 +216,14 @@ def treat(record: Record, baseline: Baseline = "standard", *, progress: Progress
             pad = math.ceil(PAD / step)
             own = slice(pad, pad + values.size)
             values = high_pass_both_ways(values, step, CORNER, pad, progress)
-    velocity = _integral(values, step)
-    every = values, velocity, _integral(velocity, step)
+    every = [values]
+    for _ in range(2):  # velocity and displacement: cumulative trapezoids from 0
+        last = every[-1]
+        every.append(np.concatenate([[0.0], np.cumsum((last[1:] + last[:-1]) / 2) * step]))
     if own != slice(None):  # copies, or each motion would keep its two minutes of pads in memory
-        every = values[own].copy(), velocity[own].copy(), every[2][own].copy()
-    motion = Motion(*every, step)
+        every = [one[own].copy() for one in every]
+    acceleration, velocity, displacement = every
+    motion = Motion(acceleration, velocity, displacement, step)
     if baseline == "standard":
         with _LOCK:
             kept = sum(one.acceleration.size for one in _TREATED.values())
@@ -240,11 +243,6 @@ def treatment(record: Record, baseline: Baseline = "standard") -> Text:
         "forward and again backward: order {in_effect} in effect; {pad:g} s of zeros at each end while filtering).",
         corner=CORNER, order=PASS_ORDER, in_effect=PASS_ORDER * PASSES, pad=PAD,
     )  # fmt: skip
-
-
-def _integral(values: FloatArray, time_step: float) -> FloatArray:
-    """Cumulative trapezoids from 0, as many as `values`."""
-    return np.concatenate([[0.0], np.cumsum((values[1:] + values[:-1]) / 2) * time_step])
 
 
 def resample(times: FloatArray, values: FloatArray, time_step: float) -> FloatArray:

@@ -40,10 +40,6 @@ LARGEST_FILE = 64_000_000
 MOST_POINTS = 2_000_000
 MOST_FIELDS = 100
 MOST_ELEMENTS = 5_000
-_PIECE = 500_000
-"""Bytes of numbers that are made into floats at once."""
-_ROUND = 2e-4
-"""By how much printed coordinates may be off a regular grid [deg]: they have four decimals."""
 _LONGEST = 200
 """Characters of a text of the file that are kept."""
 
@@ -399,7 +395,7 @@ class _Reader:
 
     def __init__(self) -> None:
         self.parser = expat.ParserCreate()
-        self.parser.buffer_text, self.parser.buffer_size = True, _PIECE
+        self.parser.buffer_text, self.parser.buffer_size = True, 500_000
         self.parser.StartElementHandler, self.parser.EndElementHandler = self._enter, self._leave
         self.parser.EntityDeclHandler = self._refuse
         self.found: dict[str, dict[str, str]] = {}
@@ -475,9 +471,9 @@ def _build(reader: _Reader) -> Grid:
     order = np.lexsort((longitudes, latitudes))  # of rising latitudes and longitudes
     north, east = (values[order].reshape(rows, columns) for values in (latitudes, longitudes))
     is_regular = bool((north == north[:, :1]).all() and (east == east[:1]).all())
-    for values in (north[:, 0], east[0]):
+    for values in (north[:, 0], east[0]):  # printed with four decimals
         step = float(values[-1] - values[0]) / (values.size - 1)
-        is_regular &= step > 0 and bool((np.abs(np.diff(values) - step) <= _ROUND + 0.01 * step).all())
+        is_regular &= step > 0 and bool((np.abs(np.diff(values) - step) <= 2e-4 + 0.01 * step).all())
     if not is_regular:
         raise InputError.about("LON and LAT are not those of a regular grid of nlon x nlat points")
     return Grid(

@@ -16,8 +16,8 @@ from assess.motion.record import Motion, Record, treat
 from assess.motion.target_fit import Spectra
 from assess.progress import SILENT, Progress
 
-MOST_SPECTRA, SPECTRUM_FROM, SPECTRUM_TO, SPECTRUM_COUNT = 100, 0.05, 10.0, 120
-"""Motions whose spectra are found, and the periods [s]."""
+MOST_SPECTRA = 100
+"""Motions whose spectra are found."""
 FEW = 30
 """Below this number of motions a note says that they are few: with 0 of 30 fallen, the interval reaches to 11 %."""
 TEXTS = frozenset({".md", ".html", ".htm", ".pdf", ".rst", ".ini", ".db"})
@@ -62,7 +62,7 @@ class Suite:
         from assess.motion.spectrum import build_periods, response_spectrum
 
         if not self._found:
-            periods = build_periods(SPECTRUM_FROM, SPECTRUM_TO, SPECTRUM_COUNT)
+            periods = build_periods(0.05, 10.0, 120)
             batches = self.realise(0, MOST_SPECTRA)
             found = [response_spectrum(batch, step, periods, progress=progress).pseudo for batch, step in batches]
             self._found.append((periods, np.concatenate(found)))

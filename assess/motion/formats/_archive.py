@@ -27,8 +27,6 @@ LISTED = 8
 """Members that an error lists."""
 
 _STARTS = (b"PK\x03\x04", b"PK\x05\x06")
-_ENTRY = b"PK\x01\x02"
-_LOCKED = 0x1
 _METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 _OFFICE = ("[Content_Types].xml", "META-INF/manifest.xml")
 
@@ -88,7 +86,8 @@ class _Walk:
     def enter(self, data: bytes, file: str, depth: int) -> None:
         if depth > DEEPEST:
             raise RecordError.about("the zip archives are nested more than {most} deep: unpack them", most=DEEPEST)
-        self._count(data.count(_ENTRY))  # before the directory is read: an entry takes a hundred times its bytes then
+        # Its entries, before the directory is read: an entry takes a hundred times its bytes then.
+        self._count(data.count(b"PK\x01\x02"))
         try:
             archive = zipfile.ZipFile(io.BytesIO(data))
         except Exception as error:  # what zipfile raises of damaged archives is any of ten kinds
@@ -102,7 +101,7 @@ class _Walk:
                 raise RecordError.about(
                     "the file is a workbook or another office file, not a record: save the sheet as CSV"
                 )
-            if locked := next((member for member in members if member.flag_bits & _LOCKED), None):
+            if locked := next((member for member in members if member.flag_bits & 0x1), None):
                 raise _BombError.about(
                     "{member} is locked with a password: unpack the archive, and name the file of the channel",
                     member=clean_name(locked),

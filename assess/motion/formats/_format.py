@@ -23,8 +23,6 @@ MOST_NOTES = 4
 """Notes on single channels that are left out."""
 HEADER_PEAK_WITHIN = 0.02
 """Headers print two to four digits of the peak; a larger difference [-] is noted."""
-COMPONENTS = 3
-"""Of one recording at one place."""
 
 _MORE_UNITS = {"mm/s2": 0.001, "g/10": GRAVITY / 10, "mg": GRAVITY / 1000, "in/s2": 0.0254}
 NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[ED][-+]?\d+)?"
@@ -257,7 +255,7 @@ def settle_directions(records: Sequence[Record]) -> tuple[Record, ...]:
         recordings[record.format, record.station, record.event, record.start, record.location, own].append(at)
     for places in recordings.values():
         known = [records[at].vertical for at in places]
-        if len(places) != COMPONENTS or (known.count(False), known.count(True)) not in {(2, 0), (0, 1), (1, 1)}:
+        if len(places) != 3 or (known.count(False), known.count(True)) not in {(2, 0), (0, 1), (1, 1)}:
             continue
         vertical = True not in known
         why = (

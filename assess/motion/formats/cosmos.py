@@ -48,7 +48,6 @@ HEADER = fields(
 # Places in the blocks of numbers, counted from 0; the format's description counts from 1.
 STAGE, AZIMUTH = 0, 53
 RAW_STEP, STEP = 33, 61
-CORRECTED = 2
 BLOCKS = {"integer": Columns(10, 8), "real": Columns(5, 15)}
 """How the numbers of the header stand where no format is printed."""
 
@@ -108,7 +107,7 @@ def _read_channel(lines: Lines) -> Record:
         azimuth, vertical = integers[AZIMUTH], False
     station = header["code"] or header["number"]
     return build_record(
-        even_series(values, step), corrected=integers[STAGE] == CORRECTED,
+        even_series(values, step), corrected=integers[STAGE] == 2,
         channel=header["channel"] and (header["channel"].lstrip("0") or "0"), direction=(azimuth, vertical),
         location=header["location"], station=f"{header['station']} ({station})" if station else "",
         event=" ".join(header["event"].split()), start=header["start"],

@@ -21,9 +21,6 @@ from assess.motion.formats._text import Lines, read_words, text_format
 from assess.motion.record import Record
 from assess.units import ACCELERATION
 
-LONGEST_HEADER = 200
-"""Lines; version 1.2 has 64."""
-
 _KEY = re.compile(r"([A-Z][A-Z0-9_/^ ]*):(.*)")
 _DATE = re.compile(r"(\d{4})(\d\d)(\d\d)_(\d\d)(\d\d)([\d.]+)")
 _RAW = re.compile(r"(none|no\b.*|not\b.*|un.*|raw.*|)", re.IGNORECASE)
@@ -31,7 +28,7 @@ _RAW = re.compile(r"(none|no\b.*|not\b.*|un.*|raw.*|)", re.IGNORECASE)
 
 def _read_channel(lines: Lines) -> Record:
     header: dict[str, str] = defaultdict(str)  # "" for keys that it has not
-    for first in range(min(len(lines), LONGEST_HEADER)):
+    for first in range(min(len(lines), 200)):  # version 1.2 has 64
         found = _KEY.match(lines.text(first))
         if not found:
             break

@@ -36,8 +36,6 @@ from assess.text import split_text
 from assess.units import ACCELERATION, TIME, read_unit
 
 KEYS = ("station", "event", "start", "location", "azimuth", "corrected")
-CHECKED_EVERY = 10_000
-"""Lines after which it is looked whether to stop."""
 BLOCK = 2**20
 """Bytes that are read at once."""
 MOST_HEAD = 2**19
@@ -238,7 +236,7 @@ def _read_block(block: bytes, table: _Table, first: int) -> FloatArray:
             pass
     numbers: list[float] = []
     for line, text in enumerate(map(decode, block.removesuffix(b"\n").split(b"\n")), start=first):
-        if line % CHECKED_EVERY == 0:
+        if line % 10_000 == 0:
             check_waits()
         if is_comment(text) or _is_blank(text):
             continue

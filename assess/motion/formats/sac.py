@@ -37,7 +37,7 @@ TEXTS = {"station": (0, 8), "event": (8, 16), "place": (24, 8), "kuser0": (136, 
 TEXTS_FROM = 440
 UNKNOWN = -12345
 
-VERSIONS, TIME_SERIES = {6, 7}, 1
+VERSIONS = {6, 7}
 KINDS = {1, 2, 3, 4, 51}
 """Time series, two kinds of spectra, pairs, and a grid."""
 OTHER_MEANINGS = {6: fill("displacements"), 7: fill("velocities"), 50: fill("volts")}
@@ -68,7 +68,7 @@ def parse(data: bytes) -> tuple[Record, ...]:
     if header is None:
         raise RecordError.about("the header is not that of a SAC file. Get the file again")
     numbers = header.integers
-    if numbers["kind"] != TIME_SERIES or numbers["even"] != 1:
+    if numbers["kind"] != 1 or numbers["even"] != 1:
         raise RecordError.about("the file holds no evenly sampled time series. Give the record itself")
     count, there = numbers["count"], (len(data) - HEADER - FOOTER * (numbers["version"] == max(VERSIONS))) / 4
     if count <= 0 or count != there:
