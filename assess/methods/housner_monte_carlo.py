@@ -24,6 +24,7 @@ this one, of a piece like this one: see `assess.rocking.draws`.
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -44,7 +45,7 @@ from assess.methods.simulate import (
     rock_draws,
     run_side_by_side,
 )
-from assess.progress import SILENT, Progress, Stage
+from assess.progress import SILENT, Stage
 from assess.risk import classify_all, wilson_end, wilson_interval
 from assess.rocking.block import MIDDLE
 from assess.rocking.draws import TRIED
@@ -86,9 +87,7 @@ def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage
     found |= {name: np.zeros(count, dtype=np.bool_) for name in FLAGS}
     found["shenton_extended"] = (way != UNKNOWN) & is_outside_shenton(cases.centre)
 
-    def work(number: int, own: NDArray[np.intp]) -> tuple[Joint, list[tuple[NDArray[np.intp], dict[str, Any]]]]:
-        return _integrate(cases, own, number, settings, max(1, threads // side_by_side), stage)
-
+    work = partial(_integrate, cases, settings, stage, max(1, threads // max(1, side_by_side)))
     for joint, parts in run_side_by_side(work, owns, side_by_side):
         joints += [joint] if joint.cases.size else []
         for own, values in parts:
@@ -127,7 +126,7 @@ def _count(fallen: IntArray, runs: IntArray, draws: IntArray, settings: Settings
 
 
 def _integrate(
-    cases: Cases, own: NDArray[np.intp], number: int, settings: Settings, threads: int, stage: Stage
+    cases: Cases, settings: Settings, stage: Stage, threads: int, number: int, own: NDArray[np.intp]
 ) -> tuple[Joint, list[tuple[NDArray[np.intp], dict[str, Any]]]]:
     """Integrate the cases `own` of an ensemble, check by check with runs="auto"; those that are decided leave.
 
@@ -185,22 +184,10 @@ def _integrate(
         "assumed_motion": is_drawn, "unknown_building": ensemble.is_unknown, "weak_motions": joint.is_weak,
     }  # fmt: skip
     if ensemble.record is not None and count:
-        found |= _rock_under_record(cases, own, ensemble.record, threads, progress)
-    slips = dict(zip(("slip_median_cm", "slip_84_cm"), extras.find_slip(), strict=True))
-    # The chance with a wall, and whether it is above that without in the same draws
-    one_sided = np.zeros(count)
-    one_sided[has_wall], draws = extras.find_one_sided()
-    alone, chance = (alike.average(one)[has_wall] for one in (counted[:, :draws].mean(axis=1), one_sided))
-    walled = {"one_sided": chance, "wall_higher": chance > alone}
-    return joint, [(own, found), (extras.sliders, slips), (extras.walled, walled)]
-
-
-def _rock_under_record(
-    cases: Cases, own: NDArray[np.intp], record: tuple[FloatArray, float], threads: int, progress: Progress
-) -> dict[str, FloatArray]:
-    motion, time_step = record
-    fell, rotation = rock_cases(cases, own, motion[np.newaxis], time_step, threads, progress)
-    return {"record_overturned": fell[:, 0].astype(np.float64), "record_rotation": rotation[:, 0]}
+        motion, time_step = ensemble.record
+        under, angle = rock_cases(cases, own, motion[np.newaxis], time_step, threads, progress)
+        found |= {"record_overturned": under[:, 0].astype(np.float64), "record_rotation": angle[:, 0]}
+    return joint, [(own, found), *extras.find(counted, has_wall, alike)]
 
 
 def _find_thirds(

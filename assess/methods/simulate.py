@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.arrays import BoolArray, FloatArray
-from assess.methods.cases import SIDE_UNKNOWN, Cases, Motions
+from assess.methods.cases import SIDE_UNKNOWN, Alike, Cases, Motions
 from assess.progress import SILENT, Progress
 from assess.risk import NORMAL_95
 from assess.rocking.draws import CUT, DrawnBodies, Uncertainty, draw_bodies
@@ -199,12 +199,21 @@ class SlipAndWall:
                 ).overturned
         self._fell.append(fell)
 
-    def find_slip(self) -> FloatArray:
-        """Return the median slip of each slider and that of `HIGH` of the draws, (2, p) [cm]."""
-        slips = np.concatenate(self._slips, axis=1) if self._slips else np.zeros((0, 1))
-        return np.asarray(np.quantile(slips / LENGTH["cm"], (0.5, HIGH), axis=1))
+    def find(
+        self, alone: BoolArray, has_wall: BoolArray, alike: Alike
+    ) -> list[tuple[NDArray[np.intp], dict[str, NDArray[Any]]]]:
+        """Return by name what was found of the sliders, and of the cases with a wall.
 
-    def find_one_sided(self) -> tuple[FloatArray, int]:
-        """Return the chance of each walled case (q,) [-], the larger of its directions, and in how many draws."""
+        Of m cases on the floor, in groups of `alike`, those that `has_wall` fell so without one, `alone` (m, k).
+        """
+        slips = np.concatenate(self._slips, axis=1) if self._slips else np.zeros((0, 1))
+        median, high = np.quantile(slips / LENGTH["cm"], (0.5, HIGH), axis=1)
         fell = np.concatenate(self._fell, axis=2) if self._fell else np.zeros((2, 0, 1))
-        return fell.mean(axis=2).max(axis=0), fell.shape[2]
+        one_sided = np.zeros(len(alone))
+        one_sided[has_wall] = fell.mean(axis=2).max(axis=0)  # the larger of its directions
+        # Whether the chance is above that without a wall in the same draws
+        free, chance = (alike.average(one)[has_wall] for one in (alone[:, : fell.shape[2]].mean(axis=1), one_sided))
+        return [
+            (self.sliders, {"slip_median_cm": median, "slip_84_cm": high}),
+            (self.walled, {"one_sided": chance, "wall_higher": chance > free}),
+        ]

@@ -169,11 +169,6 @@ class FloorTarget:
     anchors: tuple[tuple[float, float], ...] = ()
     is_ground_known: bool = True
 
-    @property
-    def corner(self) -> float:
-        """Frequency between the two bands by which the peaks are met [Hz]."""
-        return self.pfa / (2 * math.pi * self.pfv)
-
 
 _NUMBERED = re.compile(r"(?:floor|level|storey|story|piano|livello|[lfp])?[ .]*(\d{1,3})(?:°|st|nd|rd|th)?(?: floor)?")
 _BELOW = re.compile(r"(?:b|-)[ .]*\d{1,2}|(?:basement|interrato)[ .]*\d{0,2}")

@@ -196,7 +196,7 @@ class FloorMotions:
         if target.meets == "nothing":
             return motions
         step = self.beams.grid.time_step
-        low = split_bands(motions, step, np.full(GROUP, target.corner))
+        low = split_bands(motions, step, np.full(GROUP, target.pfa / (2 * math.pi * target.pfv)))
         if target.meets == "peaks":
             meet_peaks(motions, low, step, np.full(GROUP, target.pfa), np.full(GROUP, target.pfv))
             return motions
@@ -213,7 +213,7 @@ def open_floor(beams: Beams, target: FloorTarget, threads: int, progress: Progre
         return FloorMotions(beams, target, 1.0, 1.0)
     make = partial(_shake, beams, target)
     motions = make_groups(make, 0, CALIBRATED, beams.grid.count, threads, progress)
-    low = split_bands(motions, beams.grid.time_step, np.full(len(motions), target.corner))
+    low = split_bands(motions, beams.grid.time_step, np.full(len(motions), target.pfa / (2 * math.pi * target.pfv)))
     each = target.meets == "pfa"
     found = find_common(motions, low, beams.grid.time_step, target.pfa, target.pfv, each=each)
     return FloorMotions(beams, target, *found)

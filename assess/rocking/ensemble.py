@@ -170,16 +170,11 @@ def _rock_alike(
     high = min(len(blocks), pairs)
     wide = max(1, pairs // high)
     tiles = [
-        (slice(start, start + high), first, min(first + wide, len(motions)))
+        (blocks[start : start + high], motions, first, min(first + wide, len(motions)), outcome[start : start + high])
         for first, start in product(range(0, len(motions), wide), range(0, len(blocks), high))
     ]
     no_trace = np.zeros((0, 3))
-
-    def run(number: int) -> None:
-        own, first, last = tiles[number]
-        kernel.rock(blocks[own], motions, first, last, outcome[own], no_trace)
-
-    run_rows(run, len(tiles), threads, progress)
+    run_rows(lambda at: kernel.rock(*tiles[at], no_trace), len(tiles), threads, progress)
     return outcome
 
 

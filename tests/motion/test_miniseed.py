@@ -86,9 +86,13 @@ def test_rates_below_one_and_exact_rates() -> None:
     rate = data.index(b"\x00\x64\x00\x01", 30)  # 100 samples a second, times 1
     (record,) = miniseed.FORMAT.read(data[:rate] + b"\x00\x32\x00\x02" + data[rate + 4 :], "made")
     assert record.time_step == 0.01
-    assert miniseed._nominal_rate(-10, 1) == 0.1
-    assert miniseed._nominal_rate(100, -4) == 25
-    assert miniseed._nominal_rate(0, 1) == 0
+    data = write(Signal(EAST.acceleration[:100]))  # in one record
+    (record,) = miniseed.FORMAT.read(data[:rate] + b"\x00\x64\xff\xfc" + data[rate + 4 :], "made")  # 100, -4
+    assert record.time_step == 1 / 25
+    with pytest.raises(RecordError, match=r"the time step is 10 s"):
+        miniseed.FORMAT.read(data[:rate] + b"\xff\xf6\x00\x01" + data[rate + 4 :], "made")  # -10, 1
+    with pytest.raises(RecordError, match="the file has no complete miniSEED record"):
+        miniseed.FORMAT.read(data[:rate] + b"\x00\x00\x00\x01" + data[rate + 4 :], "made")  # no rate
 
 
 def test_text_is_refused() -> None:

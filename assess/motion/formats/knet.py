@@ -36,7 +36,19 @@ _NUMBER = re.compile(NUMBER, re.IGNORECASE)
 
 def _read_channel(lines: Lines) -> Record:
     header = {line[:NAME].strip(): line[NAME : 10 * NAME].strip() for line in lines.part(0, HEADER)}
-    rate, seconds = _number(header, "Sampling Freq(Hz)"), _number(header, "Duration Time(s)")
+    numbers = []
+    for key in ("Sampling Freq(Hz)", "Duration Time(s)"):
+        text = header.get(key, "")  # such as "100Hz"
+        found = _NUMBER.match(text)
+        number = read_finite(found[0]) if found else None
+        if not number:
+            raise RecordError.about(
+                "{key} is {text!r} in the header, expected a number above 0. Get the file again",
+                key=key,
+                text=text[:40],
+            )
+        numbers.append(number)
+    rate, seconds = numbers
     text = header.get("Scale Factor", "")
     found = _SCALE.match(text)
     above, below = (read_finite(found[1]), read_finite(found[2])) if found else (None, None)
@@ -57,19 +69,6 @@ def _read_channel(lines: Lines) -> Record:
         event=f"{header.get('Origin Time', '')} M{header.get('Mag.', '')}", start=start,
         header_pfa=read_peak(header.get("Max. Acc. (gal)", ""), GAL), has_offset=True,
     )  # fmt: skip
-
-
-def _number(header: dict[str, str], key: str) -> float:
-    """Return the positive number that `key` begins with: "100Hz"."""
-    found = _NUMBER.match(header.get(key, ""))
-    number = read_finite(found[0]) if found else None
-    if not number:
-        raise RecordError.about(
-            "{key} is {text!r} in the header, expected a number above 0. Get the file again",
-            key=key,
-            text=header.get(key, "")[:40],
-        )
-    return number
 
 
 FORMAT = text_format(

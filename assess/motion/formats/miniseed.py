@@ -139,7 +139,10 @@ def _read_part(
         return None
     if length < SHORTEST or at + length > len(data):
         return None
-    rate = exact if exact > 0 else _nominal_rate(factor, multiplier)
+    rate = exact
+    if not rate > 0 and factor and multiplier:  # below 0 each of the two divides
+        rate = float(factor) if factor > 0 else -1.0 / factor
+        rate = rate * multiplier if multiplier > 0 else -rate / multiplier
     if not count or not rate > 0:
         return None, length
     form, samples = REALS.get(encoding), np.zeros(0)
@@ -152,13 +155,6 @@ def _read_part(
         own = text.decode("latin-1").replace("\0", " ")
         names[text] = tuple(own[part].strip() for part in (slice(10, 12), slice(5), slice(5, 7), slice(7, 10)))
     return _Part(names[text], start, rate, encoding, samples), length
-
-
-def _nominal_rate(factor: int, multiplier: int) -> float:
-    if not factor or not multiplier:
-        return 0.0
-    rate = float(factor) if factor > 0 else -1.0 / factor
-    return rate * multiplier if multiplier > 0 else -rate / multiplier
 
 
 def _read_channel(parts: Sequence[_Part], notes: Sequence[str], whole_name: bool) -> Record:
