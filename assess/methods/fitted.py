@@ -323,12 +323,12 @@ def write_model(model: Fitted) -> str:
     """
     top = {"key": model.key, "title": model.title, "kind": model.kind, "fitted_on": model.fitted.data}
     if isinstance(model.formula, Probit):
-        formula = [f"{name} = {_number(getattr(model.formula, name))}" for name in KINDS["probit"]]
+        formula = [f"{name} = {float(getattr(model.formula, name))!r}" for name in KINDS["probit"]]
     else:
         formula = [
             f'base = "{model.formula.base}"',
             "terms = [  # power of the base, of x = B/H; power of PFA [cm/s2]; coefficient",
-            *(f"  [{i}, {j}, {_number(c)}]," for i, j, c in model.formula.terms),
+            *(f"  [{i}, {j}, {float(c)!r}]," for i, j, c in model.formula.terms),
             "]",
         ]
     lines = [
@@ -336,19 +336,15 @@ def write_model(model: Fitted) -> str:
         f"format = {FORMAT}",
         *(f"{name} = {json.dumps(text, ensure_ascii=False)}" for name, text in top.items()),
         "\n[range]",
-        *(f"{name} = [{_number(one.low)}, {_number(one.high)}]" for name, one in model.ranges.items()),
+        *(f"{name} = [{float(one.low)!r}, {float(one.high)!r}]" for name, one in model.ranges.items()),
         "\n[errors]",
-        *(f"{name} = {_number(getattr(model.fitted, field))}" for name, field in ERRORS.items()),
+        *(f"{name} = {float(getattr(model.fitted, field))!r}" for name, field in ERRORS.items()),
         f"\n[{model.kind}]",
         *formula,
     ]
     text = "\n".join(lines) + "\n"
     parse_model(text, "the model")
     return text
-
-
-def _number(value: float) -> str:
-    return repr(float(value))
 
 
 def read_model(path: Path | str) -> Method:

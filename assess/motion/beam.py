@@ -229,17 +229,15 @@ def _shake(beams: Beams, target: FloorTarget, group: int) -> Single:
 
 def _find_height_factor(beams: Beams, target: FloorTarget, place: float, group: int) -> FloatArray:
     """Return ln of the factor at a height in each draw (GROUP,), between the next floors with a known PFA."""
-
-    def find_log(anchor: tuple[float, float]) -> FloatArray:
-        strongest = target.factor * np.abs(beams.shake(group, anchor[0])).max(axis=1)
-        return np.asarray(np.log(anchor[1] / strongest), np.float64)
-
     below = max((one for one in target.anchors if one[0] <= place), default=None)
     above = min((one for one in target.anchors if one[0] > place), default=None)
-    low, high = (None if one is None else find_log(one) for one in (below, above))
+    low, high = (
+        one and np.log(one[1] / (target.factor * np.abs(beams.shake(group, one[0])).max(axis=1))).astype(np.float64)
+        for one in (below, above)
+    )
     if low is None and target.is_ground_known:
         below, low = (0.0, 0.0), np.zeros(GROUP)
     if low is None or high is None or below is None or above is None:
         found = low if high is None else high
         return np.zeros(GROUP) if found is None else found
-    return low + (high - low) * (place - below[0]) / (above[0] - below[0])
+    return np.asarray(low + (high - low) * (place - below[0]) / (above[0] - below[0]), np.float64)
