@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import tempfile
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -83,12 +83,20 @@ def poison(path: Path) -> None:
                 archive.writestr(name, data)
 
 
+def evaluate(path: Path, edits: Iterable[tuple[str, int, int, Any]] = ()) -> Any:
+    """Return a workbook as formualizer computes it after cells (sheet, row, column) were given values."""
+    book = formualizer.load_workbook(str(path))
+    for sheet, row, column, value in edits:
+        book.set_value(sheet, row, column, value)
+    book.evaluate_all()
+    return book
+
+
 def compare_formulas(path: Path) -> int:
     """Hold every stored result of a formula against what formualizer computes; return how many there are."""
     stored = stored_cells(path)
     poison(path)
-    book = formualizer.load_workbook(str(path))
-    book.evaluate_all()
+    book = evaluate(path)
     formulas = [(sheet.title, cell) for sheet in openpyxl.load_workbook(path) for row in sheet.iter_rows()
                 for cell in row if cell.data_type == "f"]  # fmt: skip
     for title, cell in formulas:

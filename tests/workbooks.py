@@ -1,5 +1,7 @@
 """Workbooks for tests, written as a user would fill them in."""
 
+import io
+import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -91,3 +93,9 @@ def places(values: Mapping[str, Value]) -> dict[Place, Value]:
     """Return values by the places of their cells."""
     found = {split_address(address): value for address, value in values.items()}
     return {(place[1], place[0] - 1): value for place, value in found.items() if place is not None}
+
+
+def parts_of(workbook: Path | bytes) -> dict[str, bytes]:
+    """Return the parts of a workbook's zip by their names."""
+    with zipfile.ZipFile(workbook if isinstance(workbook, Path) else io.BytesIO(workbook)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}

@@ -73,7 +73,6 @@ def make_sheets(
 
 
 def write_cobie(path: Path, **rows: Any) -> Path:
-    """Write a COBie file with these rows."""
     return write_book(path, make_sheets(**rows))
 
 

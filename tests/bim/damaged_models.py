@@ -3,7 +3,6 @@
 import random
 import re
 from pathlib import Path
-from typing import Any
 
 from tests.bim.ifc_files import ModelWriter
 
@@ -31,22 +30,17 @@ def write_house(path: Path) -> Path:
         desk = model.piece("Desk", within=room, at=(3, 2, level))
         boxes = ((0, 0, 0.7, 0.8, 1.6, 0.04), (0, 0.7, 0, 0.7, 0.05, 0.7), (0, -0.7, 0, 0.7, 0.05, 0.7))
         model.aggregate(desk, *(model.piece(f"Part {at}", box, at=(3, 2, level)) for at, box in enumerate(boxes)))
-        _add_door(model, storey, level)
+        wall = model.element("IfcWall", "Wall", (3, -0.1, level, 6, 0.2, 2.8), within=storey)
+        hole = model.element("IfcOpeningElement", "Hole", (2, -0.1, level, 0.9, 0.4, 2.1))
+        door = model.element("IfcDoor", "Door", (2, -0.1, level, 0.9, 0.1, 2.1), within=storey, OverallWidth=0.9)
+        model.root("IfcRelVoidsElement", None, RelatingBuildingElement=wall, RelatedOpeningElement=hole)
+        model.root("IfcRelFillsElement", None, RelatingOpeningElement=hole, RelatedBuildingElement=door)
     stair = (5, 3, 0, 0.9, 2.4, 3.0)
     model.element("IfcStair", "Stair", stair, within=model.storeys["Level 0"], PredefinedType="STRAIGHT_RUN_STAIR")
     for number, one in enumerate(sorted(model.file.by_type("IfcRoot"), key=lambda one: one.id())):
         one.GlobalId = f"0{number:021}"  # the same file each time
     model.file.header.file_name.time_stamp = "2026-01-01T00:00:00"
     return model.write(path)
-
-
-def _add_door(model: ModelWriter, storey: Any, level: float) -> None:
-    """Add a wall with a hole and a door in it."""
-    wall = model.element("IfcWall", "Wall", (3, -0.1, level, 6, 0.2, 2.8), within=storey)
-    hole = model.element("IfcOpeningElement", "Hole", (2, -0.1, level, 0.9, 0.4, 2.1))
-    door = model.element("IfcDoor", "Door", (2, -0.1, level, 0.9, 0.1, 2.1), within=storey, OverallWidth=0.9)
-    model.root("IfcRelVoidsElement", None, RelatingBuildingElement=wall, RelatedOpeningElement=hole)
-    model.root("IfcRelFillsElement", None, RelatingOpeningElement=hole, RelatedBuildingElement=door)
 
 
 def damage(data: bytes, draw: random.Random) -> bytes:
@@ -97,7 +91,3 @@ def _exchange(line: bytes, pattern: re.Pattern[bytes], text: bytes, draw: random
         return line
     one = draw.choice(found)
     return line[: one.start()] + text + line[one.end() :]
-
-
-WAYS = (_change, _change, _drop, _refer, _refer, _number, _number)
-"""What is done to a line, by how often."""

@@ -9,6 +9,7 @@ import ifcopenshell.guid
 
 from assess.bim.building_model import BuildingModel
 from assess.bim.ifc_model import read_model
+from assess.bim.import_workbook import ImportedBuilding, build_workbook
 
 
 @dataclass
@@ -64,7 +65,6 @@ class ModelWriter:
     # ------------------------------------------------------------ parts
 
     def root(self, kind: str, name: str | None, **more: Any) -> Any:
-        """Return an entity with a GlobalId."""
         return self.file.create_entity(
             kind, GlobalId=ifcopenshell.guid.new(), OwnerHistory=self.owner, Name=name, **more
         )
@@ -136,7 +136,6 @@ class ModelWriter:
         return self.element(kind, name, *boxes, within=within, **more)
 
     def typed(self, kind: str, name: str, *elements: Any) -> Any:
-        """Give elements a type."""
         more = {"AssemblyPlace": "NOTDEFINED"} if kind == "IfcFurnitureType" else {"PredefinedType": "NOTDEFINED"}
         one = self.root(kind, name, **more)
         self.root("IfcRelDefinesByType", None, RelatedObjects=elements, RelatingType=one)
@@ -158,5 +157,12 @@ def one_room(
 
 
 def read(model: ModelWriter, folder: Path) -> BuildingModel:
-    """Return a model as it is read from its file."""
     return read_model(model.write(folder / "a.ifc"), "a.ifc")
+
+
+def write_import(found: ImportedBuilding, folder: Path) -> Path:
+    """Write the workbook of an import, with its plans beside it."""
+    for name, data in found.files.items():
+        (folder / name).write_bytes(data)
+    (folder / "book.xlsx").write_bytes(build_workbook(found))
+    return folder / "book.xlsx"

@@ -11,7 +11,6 @@ LEAF = 0.9
 
 
 def rectangle(x: float, y: float, u: float, v: float) -> Area:
-    """Return a rectangle from (x, y) to (u, v)."""
     return (((x, y), (u, y), (u, v), (x, v)),)
 
 
@@ -20,8 +19,11 @@ def door(key: str, x: float, y: float, normal: float = 90.0, storey: str = "0", 
     return Door(key, storey, key, x, y, normal, LEAF, WALL, overall)
 
 
+def room(key: str, *corners: float, storey: str = "0") -> Space:
+    return Space(key, storey, key, "", rectangle(*corners), 0.0, 3.0)
+
+
 def piece(key: str, x: float, y: float, space: str = "", storey: str = "0", **more: Any) -> Piece:
-    """Return a cabinet."""
     values = {"breadth": 0.4, "width": 1.0, "height": 2.0, "angle_deg": 90.0, "support_breadth": 0.4,
               "support_width": 1.0, "bottom": 0.0} | more  # fmt: skip
     return Piece(key=key, storey=storey, space=space, ifc_class="IfcFurniture", name=key, type="Cabinet",

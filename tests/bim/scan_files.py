@@ -77,5 +77,4 @@ def office(**more: Any) -> Element:
 
 
 def write(document: object) -> bytes:
-    """Return a document as the bytes of a file."""
     return json.dumps(document).encode()

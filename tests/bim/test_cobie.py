@@ -1,3 +1,4 @@
+import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -12,8 +13,9 @@ from assess.bim.import_workbook import ImportedBuilding, build_workbook
 from assess.errors import WorkbookError
 from assess.workbook.read import is_cobie, read_inventory
 from tests.bim.cobie_files import COMPONENTS, FLOORS, TYPES, make_sheets, one_type, write_cobie
+from tests.motion.writers import zipped
 from tests.workbook.books import write_book, write_shared
-from tests.workbooks import write as write_inventory
+from tests.workbooks import parts_of, write as write_inventory
 
 SHAKEN = {"ground_pga": 0.3}
 
@@ -43,24 +45,15 @@ def test_moveable_components_become_pieces_with_room_floor_and_identifier(tmp_pa
     assert any("do not record fixings or positions: fill in Anchored" in one for one in found.remarks)
 
 
-# ---------------------------------------------------------------- units and sizes
-
-
 @pytest.mark.parametrize(
     ("unit", "size", "cm"),
     [
-        ("millimeters", 2000, 200),
-        ("Millimetres", "2000.0", 200),
-        ("mm", 2000, 200),
-        ("centimeters", 200, 200),
-        ("Meters", 2, 200),
-        ("metre", "2.0", 200),
-        ("feet", 6, 182.88),
-        ("Inches", 81, 205.74),
+        ("millimeters", 2000, 200), ("Millimetres", "2000.0", 200), ("mm", 2000, 200), ("centimeters", 200, 200),
+        ("Meters", 2, 200), ("metre", "2.0", 200), ("feet", 6, 182.88), ("Inches", 81, 205.74),
         ("millimeters", "914.400", 91.44),  # of a program: a point, never thousands
         ("millimeters", "2e3", 200),
     ],
-)
+)  # fmt: skip
 def test_units_and_numbers_stored_as_texts(tmp_path: Path, unit: str, size: Any, cm: float) -> None:
     sizes = dict.fromkeys(("NominalLength", "NominalWidth", "NominalHeight"), size)
     found = _read(tmp_path, facility={"LinearUnits": unit}, **one_type(**sizes))
@@ -75,9 +68,7 @@ def test_units_and_numbers_stored_as_texts(tmp_path: Path, unit: str, size: Any,
         ("millimeters", 0.001, r"would be 0\.9 mm\. Check LinearUnits: in m, ft most of them are in range"),
     ],
 )  # fmt: skip
-def test_a_unit_in_which_no_size_can_be_is_refused_with_its_cell(
-    tmp_path: Path, unit: str, size: float, message: str
-) -> None:
+def test_a_unit_of_impossible_sizes_is_refused(tmp_path: Path, unit: str, size: float, message: str) -> None:
     sizes = {"NominalLength": 900 * size, "NominalWidth": 303 * size, "NominalHeight": 2000 * size}
     with pytest.raises(WorkbookError, match=message) as caught:
         _read(tmp_path, facility={"LinearUnits": unit}, **one_type(**sizes))
@@ -104,17 +95,12 @@ LEFT_OUT: list[tuple[dict[str, Any], str]] = [
 
 
 @pytest.mark.parametrize(("values", "reason"), LEFT_OUT)
-def test_a_type_that_cannot_be_taken_is_named_with_its_number_and_the_reason(
-    tmp_path: Path, values: dict[str, Any], reason: str
-) -> None:
+def test_a_type_that_cannot_be_taken_is_named(tmp_path: Path, values: dict[str, Any], reason: str) -> None:
     found = _read(tmp_path, **one_type(**values))
     ((kind, number, why, is_furniture),) = _skipped(found)
     assert (kind, number, is_furniture) == ("Bookcase A", 1, True)
     assert why.startswith(reason)
     assert (found.items, found.is_complete) == ([], False)
-
-
-# ---------------------------------------------------------------- components, spaces and floors
 
 
 @pytest.mark.parametrize(
@@ -167,9 +153,6 @@ def test_components_of_one_name_are_told_apart_and_names_compared_without_letter
     assert {(one["type"], one["room"]) for one in found.items} == {("Bookcase A", "G01")}
 
 
-# ---------------------------------------------------------------- the sheets
-
-
 Sheets = dict[str, list[list[Any]]]
 
 
@@ -180,28 +163,21 @@ def _error(path: Path) -> str:
     return str(problem)
 
 
-# ---------------------------------------------------------------- as programs write them
-
-
-def _lower_case(sheets: Sheets) -> Sheets:
-    return {name.upper(): [[str(one).lower() for one in rows[0]], *rows[1:]] for name, rows in sheets.items()}
-
-
-def _coloured_row(sheets: Sheets) -> Sheets:
-    return {name: [["Primary key", "", "yellow: required"], [], *rows] for name, rows in sheets.items()}
-
-
 def _template_rows(sheets: Sheets) -> Sheets:
     marks = ["required", "lookup", "n/a"]
     return {name: [rows[0], rows[0], [marks[at % 3] for at in range(len(rows[0]))], *rows[1:]] if name != "Instruction"
             else rows for name, rows in sheets.items()}  # fmt: skip
 
 
-def _other_order(sheets: Sheets) -> Sheets:
-    return {name: [row[::-1] for row in rows] for name, rows in reversed(sheets.items())}
+AS_WRITTEN: list[Callable[[Sheets], Sheets]] = [
+    _template_rows,
+    lambda sheets: {name.upper(): [[str(one).lower() for one in rows[0]], *rows[1:]] for name, rows in sheets.items()},
+    lambda sheets: {name: [["Primary key", "", "yellow: required"], [], *rows] for name, rows in sheets.items()},
+    lambda sheets: {name: [row[::-1] for row in rows] for name, rows in reversed(sheets.items())},
+]
 
 
-@pytest.mark.parametrize("change", [_lower_case, _coloured_row, _template_rows, _other_order])
+@pytest.mark.parametrize("change", AS_WRITTEN, ids=["of the template", "lower case", "a coloured row", "another order"])
 def test_sheets_as_programs_write_them(tmp_path: Path, change: Callable[[Sheets], Sheets]) -> None:
     path = write_shared(tmp_path / "c.xlsx", change(make_sheets()))
     found = read_cobie(path, path.name)
@@ -211,41 +187,19 @@ def test_sheets_as_programs_write_them(tmp_path: Path, change: Callable[[Sheets]
     assert found.building["building"] == "East wing"
 
 
-# ---------------------------------------------------------------- of another kind
-
-
-def test_an_inventory_workbook_is_named_as_one(tmp_path: Path) -> None:
+def test_files_that_lack_something_or_are_too_large_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = write_inventory(tmp_path / "w.xlsx")
     assert _error(path) == "w.xlsx is an inventory workbook already, not a COBie file. Check it with `assess check`."
-
-
-def _drop_sheets(sheets: Sheets) -> None:
-    del sheets["Type"], sheets["Space"]
-
-
-def _rename_column(sheets: Sheets) -> None:
-    sheets["Type"][0] = [one if one != "NominalHeight" else "Size" for one in sheets["Type"][0]]
-
-
-def _drop_header(sheets: Sheets) -> None:
-    sheets["Space"] = [["a"], ["b"]]
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (_drop_sheets, "c.xlsx is no COBie file: it has no sheet named Space, Type. Export it"),
-        (_rename_column, "Type: the header row lacks NominalHeight. Name the columns as COBie 2.4 does"),
-        (_drop_header, "Space: the sheet has no header row with Name, FloorName."),
-    ],
-)
-def test_what_a_file_lacks_is_named(tmp_path: Path, change: Callable[[Sheets], None], message: str) -> None:
     sheets = make_sheets()
-    change(sheets)
-    assert _error(write_book(tmp_path / "c.xlsx", sheets)).startswith(message)
-
-
-def test_a_unit_that_is_not_known_is_an_error(tmp_path: Path) -> None:
+    head, *types = sheets["Type"]
+    for changed, message in (
+        ({name: rows for name, rows in sheets.items() if name not in ("Type", "Space")},
+         "c.xlsx is no COBie file: it has no sheet named Space, Type. Export it"),
+        (sheets | {"Type": [[one if one != "NominalHeight" else "Size" for one in head], *types]},
+         "Type: the header row lacks NominalHeight. Name the columns as COBie 2.4 does"),
+        (sheets | {"Space": [["a"], ["b"]]}, "Space: the sheet has no header row with Name, FloorName."),
+    ):  # fmt: skip
+        assert _error(write_book(tmp_path / "c.xlsx", changed)).startswith(message), message
     blank = "Facility!G2: LinearUnits is blank, so that no size can be read."
     for unit, fault in (
         (None, blank), ("n/a", blank), ("cubits", "Facility!G2: LinearUnits is 'cubits', which is not read."),
@@ -253,12 +207,12 @@ def test_a_unit_that_is_not_known_is_an_error(tmp_path: Path) -> None:
         path = write_cobie(tmp_path / "c.xlsx", facility={"LinearUnits": unit})
         expected = f"{fault} Write the unit of NominalHeight: millimeters, centimeters, meters, inches or feet."
         assert _error(path) == expected
-
-
-# ---------------------------------------------------------------- damaged, large, hostile
-
-
-def test_rows_without_end_are_an_error_before_they_are_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write_cobie(tmp_path / "c.xlsx")
+    with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("xl/worksheets/sheet99.xml", b"<a/>" * 2**20)
+    text = _error(path)
+    assert "zip bomb" in text
+    assert "Delete the sheets Attribute, Document and Coordinate in a copy of it, and import that." in text
     monkeypatch.setattr(cobie, "MAX_ROWS", 50)
     rows = [{**COMPONENTS[0], "Name": f"B{at}"} for at in range(60)]
     path = write_cobie(tmp_path / "c.xlsx", components=rows)
@@ -273,7 +227,10 @@ def test_a_million_rows_are_refused_in_bounded_memory(tmp_path: Path) -> None:
 
     path = write_cobie(tmp_path / "c.xlsx")
     row = '<row r="{0}"><c r="A{0}" t="inlineStr"><is><t>B</t></is></c></row>'
-    _replace_rows(path, "Component", "".join(row.format(at) for at in range(2, 1_000_000)))
+    parts, part = parts_of(path), f"xl/worksheets/sheet{list(make_sheets()).index('Component') + 1}.xml"
+    head, tail = re.split(r"(?<=</row>).*(?=</sheetData>)", parts[part].decode(), maxsplit=1, flags=re.DOTALL)
+    rows = "".join(row.format(at) for at in range(2, 1_000_000))
+    path.write_bytes(zipped(parts | {part: f"{head}{rows}{tail}".encode()}))
     code = (
         "import resource, sys\nresource.setrlimit(resource.RLIMIT_AS, (2**31, 2**31))\n"
         "from pathlib import Path\nfrom assess.bim.cobie import read_cobie\nfrom assess.errors import WorkbookError\n"
@@ -281,29 +238,6 @@ def test_a_million_rows_are_refused_in_bounded_memory(tmp_path: Path) -> None:
     )
     done = subprocess.run([sys.executable, "-c", code, str(path)], capture_output=True, text=True, check=False)
     assert "Component!A100001: the sheet has more than 100,000 rows." in done.stdout or "zip bomb" in done.stdout, done
-
-
-def _replace_rows(path: Path, name: str, rows: str) -> None:
-    """Put rows as XML in the place of those of a sheet, below its header."""
-    at = list(make_sheets()).index(name) + 1
-    with zipfile.ZipFile(path) as archive:
-        parts = {one: archive.read(one) for one in archive.namelist()}
-    part = f"xl/worksheets/sheet{at}.xml"
-    text = parts[part].decode()
-    head, tail = text[: text.index("</row>") + len("</row>")], text[text.index("</sheetData>") :]
-    parts[part] = f"{head}{rows}{tail}".encode()
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for one, data in parts.items():
-            archive.writestr(one, data)
-
-
-def test_a_file_too_large_says_which_sheets_to_leave_out(tmp_path: Path) -> None:
-    path = write_cobie(tmp_path / "c.xlsx")
-    with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("xl/worksheets/sheet99.xml", b"<a/>" * 2**20)
-    text = _error(path)
-    assert "zip bomb" in text
-    assert "Delete the sheets Attribute, Document and Coordinate in a copy of it, and import that." in text
 
 
 HOSTILE = (
@@ -326,36 +260,14 @@ def test_names_stay_text(tmp_path: Path) -> None:
     assert not [cell.value for cell in cells if cell.data_type == "f" and "HYPERLINK" in str(cell.value)]
 
 
-def test_a_cobie_file_is_known_by_its_sheets(tmp_path: Path) -> None:
-    cobie = write_cobie(tmp_path / "c.xlsx")
-    inventory = write_inventory(tmp_path / "w.xlsx")
-    (tmp_path / "t.xlsx").write_bytes(b"PK\x03\x04 not a zip")
-    assert is_cobie(cobie)
-    assert is_cobie(cobie.read_bytes())
-    assert not is_cobie(inventory)
-    assert not is_cobie(inventory.read_bytes())
-    assert not is_cobie(tmp_path / "t.xlsx")
-    assert not is_cobie(tmp_path / "missing.xlsx")
-    assert not is_cobie(b"")
-
-
-def test_of_several_spaces_the_first_known_is_taken_and_said(tmp_path: Path) -> None:
+def test_what_is_taken_of_several_spaces_odd_sizes_other_spellings_and_thin_pieces(tmp_path: Path) -> None:
     found = _read(tmp_path, components=({**COMPONENTS[0], "Space": "Site, U01, G01"},))
     assert found.items[0]["floor"] == "Upper"
     assert "1 piece names several spaces; the first that is known was taken." in found.remarks
-
-
-def test_pieces_that_no_unit_makes_furniture_are_left_out_and_the_unit_is_not_doubted(tmp_path: Path) -> None:
     found = _read(tmp_path, **one_type(NominalLength=30_000, NominalWidth=1, NominalHeight=0.001))
     assert [one.type for one in found.skipped] == ["Bookcase A"]
-
-
-def test_spellings_of_moveable(tmp_path: Path) -> None:
     for typed in ("Movable", "MOVEABLE", " moveable "):
         assert len(_read(tmp_path, **one_type(AssetType=typed)).items) == 1
-
-
-def test_thin_pieces_are_named_as_what_may_hang_on_a_wall(tmp_path: Path) -> None:
     found = _read(tmp_path, **one_type(NominalWidth=60))
     assert any("Thinner than 10 cm" in text and "Bookcase A" in text for text in found.remarks)
 
@@ -369,10 +281,20 @@ def test_a_type_named_as_one_of_the_catalogue_takes_its_place(tmp_path: Path) ->
     assert kind.source == "COBie file COBie.xlsx, sheet Type: nominal sizes"
 
 
-def test_a_file_without_furniture_and_with_several_facilities_gives_its_floors(tmp_path: Path) -> None:
+def test_a_file_without_furniture_gives_its_floors_and_a_cobie_file_is_known_by_its_sheets(tmp_path: Path) -> None:
     sheets = make_sheets(types=(), components=())
     sheets["Facility"].append(sheets["Facility"][1])
     path = write_book(tmp_path / "c.xlsx", sheets)
     found = read_cobie(path, path.name)
     assert (len(found.floors), found.items, found.is_complete) == (2, [], False)
     assert found.remarks[0] == "The sheet Facility has 2 rows; the first was taken."
+    cobie = write_cobie(tmp_path / "c.xlsx")
+    inventory = write_inventory(tmp_path / "w.xlsx")
+    (tmp_path / "t.xlsx").write_bytes(b"PK\x03\x04 not a zip")
+    assert is_cobie(cobie)
+    assert is_cobie(cobie.read_bytes())
+    assert not is_cobie(inventory)
+    assert not is_cobie(inventory.read_bytes())
+    assert not is_cobie(tmp_path / "t.xlsx")
+    assert not is_cobie(tmp_path / "missing.xlsx")
+    assert not is_cobie(b"")

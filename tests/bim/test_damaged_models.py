@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from assess.bim import model_process
-from assess.bim.import_workbook import build_workbook
 from assess.bim.model_rows import Drafts
 from assess.bim.read_source import read_source
 from assess.errors import AssessError, WorkbookError
 from assess.workbook.read import read_inventory, read_tables
 from tests.bim.damaged_models import damage, write_house
+from tests.bim.ifc_files import write_import
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
 QUICK = {"house": 2, "large": 1}
@@ -39,10 +39,7 @@ def read_damaged(data: bytes, seed: int, folder: Path) -> str:
         found = read_source(path, "a.ifc", routes=draw.choice(DRAFTS))
     except AssessError as error:
         return "refused" if error.message.startswith(("a.ifc", "The model")) else error.message
-    for name, plan in found.files.items():
-        (folder / name).write_bytes(plan)
-    book = folder / "book.xlsx"
-    book.write_bytes(build_workbook(found))
+    book = write_import(found, folder)
     _, problems = read_tables(book.read_bytes(), book.name)
     errors = [str(one) for one in problems if one.severity == "error"]
     try:
@@ -54,7 +51,6 @@ def read_damaged(data: bytes, seed: int, folder: Path) -> str:
 
 @pytest.fixture(scope="module")
 def models(tmp_path_factory) -> dict[str, bytes]:
-    """Return the models that are damaged."""
     house = write_house(tmp_path_factory.mktemp("house") / "house.ifc")
     return {"house": house.read_bytes(), "large": (MODELS / "LargeBuilding.ifc").read_bytes()}
 

@@ -5,14 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from assess.bim.building_model import BuildingModel, Space, Storey
+from assess.bim.building_model import BuildingModel, Storey
 from assess.bim.draft_floor import find_ground, find_kinds, find_sides
-from tests.bim.office_models import door, rectangle
-
-
-def room(key: str, *corners: float, storey: str = "0") -> Space:
-    return Space(key, storey, key, "", rectangle(*corners), 0.0, 3.0)
-
+from tests.bim.office_models import door, rectangle, room
 
 TWO = room("a", 0, 0, 4, 4), room("b", 4.1, 0, 8, 4)
 
@@ -39,25 +34,38 @@ def test_doors_of_published_models(large, duplex):
 @pytest.mark.parametrize(
     ("at", "kind", "sides"),
     [
-        ((4.05, 2.0, 0.0), "inside", ("b", "a")),
-        ((4.05, 2.0, 180.0), "inside", ("a", "b")),
-        ((-0.05, 2.0, 0.0), "exit", ("a", "")),
-        ((-0.05, 2.0, 180.0), "exit", ("", "a")),
-        ((2.0, 2.0, 37.0), "same room", ("a", "a")),
-        ((20.0, 2.0, 0.0), "no room", ("", "")),
+        ((4.05, 2.0, 0.0), "inside", ("b", "a")), ((4.05, 2.0, 180.0), "inside", ("a", "b")),
+        ((-0.05, 2.0, 0.0), "exit", ("a", "")), ((-0.05, 2.0, 180.0), "exit", ("", "a")),
+        ((2.0, 2.0, 37.0), "same room", ("a", "a")), ((20.0, 2.0, 0.0), "no room", ("", "")),
     ],
-)
+)  # fmt: skip
 def test_each_side_has_a_space_or_none(at, kind, sides):
     found = model(door("d", *at))
     assert (find_sides(found), find_kinds(found, find_sides(found))) == ({"d": sides}, {"d": kind})
 
 
-def test_of_spaces_in_each_other_the_smallest_counts_and_those_of_other_storeys_are_on_no_side():
+def test_which_spaces_walls_and_storeys_count_at_a_door():
     """Some programs export a whole storey as a space, too."""
     leaf, a, b = door("d", 4.05, 2.0, 0.0), room("a", 0, 0, 4, 4), room("b", 4.1, 0, 8, 4)
     assert find_sides(model(leaf, spaces=(room("zone", -1, -1, 9, 5), a, b))) == {"d": ("b", "a")}
     found = model(leaf, spaces=(a, replace(b, storey="1")), elevations=(0.0, 3.0))
     assert find_sides(found) == {"d": ("", "a")}
+    leaf = replace(door("d", 4.03, 2.0, 0.0), thickness=0.06)
+    found = replace(model(leaf, spaces=(room("a", 0, 0, 4, 4),)), walls={"0": (rectangle(4, -1, 5, 5),)})
+    assert find_kinds(found, find_sides(found)) == {"d": "exit"}
+    # Beyond a passage of 80 cm that has no space.
+    leaf = door("d", 4.05, 2.0, 0.0)
+    found = model(leaf, spaces=(room("a", 0, 0, 4, 4), room("b", 5.2, 0, 9, 4)))
+    walled = replace(found, walls={"0": (rectangle(4, -1, 4.1, 5), rectangle(4.9, -1, 5.2, 5))})
+    assert find_sides(walled) == {"d": ("", "a")}
+    found = model(replace(door("d", 4.25, 2.0, 0.0), thickness=0.1),
+                  spaces=(room("a", 0, 0, 4, 4), room("b", 4.7, 0, 8, 4)))  # fmt: skip
+    assert find_sides(found) == {"d": ("b", "a")}
+    foundation_and_slab = model(door("d", -0.05, 2.0, 0.0, "2"), spaces=(room("a", 0, 0, 4, 4, storey="2"),),
+                                elevations=(-0.5, -0.1, 0.0))  # fmt: skip
+    assert find_ground(foundation_and_slab).name == "Level 2"
+    assert find_ground(model(spaces=())) is None
+    assert find_ground(model()) is None
 
 
 @pytest.mark.parametrize("x", [4.03, 4.97, 4.5])
@@ -67,20 +75,6 @@ def test_a_leaf_at_one_face_of_a_thick_wall_joins_both_rooms(x):
     found = model(leaf, spaces=(room("a", 0, 0, 4, 4), room("b", 5, 0, 9, 4)))
     walled = replace(found, walls={"0": (rectangle(4, -1, 5, 5),)})
     assert (find_sides(walled), find_kinds(walled, find_sides(walled))) == ({"d": ("b", "a")}, {"d": "inside"})
-
-
-def test_an_outer_wall_that_is_thick_leads_out_all_the_same():
-    leaf = replace(door("d", 4.03, 2.0, 0.0), thickness=0.06)
-    found = replace(model(leaf, spaces=(room("a", 0, 0, 4, 4),)), walls={"0": (rectangle(4, -1, 5, 5),)})
-    assert find_kinds(found, find_sides(found)) == {"d": "exit"}
-
-
-def test_a_wall_behind_another_is_not_that_of_the_door():
-    """Beyond a passage of 80 cm that has no space."""
-    leaf = door("d", 4.05, 2.0, 0.0)
-    found = model(leaf, spaces=(room("a", 0, 0, 4, 4), room("b", 5.2, 0, 9, 4)))
-    walled = replace(found, walls={"0": (rectangle(4, -1, 4.1, 5), rectangle(4.9, -1, 5.2, 5))})
-    assert find_sides(walled) == {"d": ("", "a")}
 
 
 @pytest.mark.parametrize(
@@ -106,17 +100,3 @@ def test_the_ground_is_the_lowest_storey_with_doors_that_is_no_basement(elevatio
     assert {key: kinds[f"d{key}"] for key in keys} == {
         key: "exit" if f"Level {key}" == ground else "outside" for key in keys
     }
-
-
-def test_a_room_is_found_behind_a_thick_finish():
-    found = model(replace(door("d", 4.25, 2.0, 0.0), thickness=0.1),
-                  spaces=(room("a", 0, 0, 4, 4), room("b", 4.7, 0, 8, 4)))  # fmt: skip
-    assert find_sides(found) == {"d": ("b", "a")}
-
-
-def test_a_storey_without_rooms_or_doors_is_not_the_ground():
-    foundation_and_slab = model(door("d", -0.05, 2.0, 0.0, "2"), spaces=(room("a", 0, 0, 4, 4, storey="2"),),
-                                elevations=(-0.5, -0.1, 0.0))  # fmt: skip
-    assert find_ground(foundation_and_slab).name == "Level 2"
-    assert find_ground(model(spaces=())) is None
-    assert find_ground(model()) is None

@@ -6,14 +6,10 @@ import pytest
 
 from assess.bim.building_model import BuildingModel, Space, Storey
 from assess.bim.draft_floor import build_plan, find_openings
-from tests.bim.office_models import door, piece, rectangle
+from tests.bim.office_models import door, piece, rectangle, room
 
 FAR_WALL = rectangle(-1, -1, -0.9, 5)
 """A storey has walls, at least somewhere."""
-
-
-def room(key: str, *corners: float) -> Space:
-    return Space(key, "0", key, "", rectangle(*corners), 0.0, 3.0)
 
 
 TWO = room("a", 0, 0, 4, 4), room("b", 4.2, 0, 8, 4)
@@ -31,25 +27,21 @@ def find(found: BuildingModel) -> list[tuple[set[str], float, float, float]]:
 
 
 def walls_but(low: float, high: float, x: float = 4.0) -> list[object]:
-    """Return a wall with a gap in it."""
     return [rectangle(x, -0.1, x + 0.2, low), rectangle(x, high, x + 0.2, 4.1)]
 
 
 @pytest.mark.parametrize(
     ("low", "high", "found"),
     [
-        (0.0, 4.0, [({"a", "b"}, 4.1, 2.0, 4.0)]),
-        (1.0, 2.0, [({"a", "b"}, 4.1, 1.5, 1.0)]),
-        (1.0, 1.7, [({"a", "b"}, 4.1, 1.4, 0.7)]),
-        (1.0, 1.4, []),
-        (4.0, 4.0, []),
+        (0.0, 4.0, [({"a", "b"}, 4.1, 2.0, 4.0)]), (1.0, 2.0, [({"a", "b"}, 4.1, 1.5, 1.0)]),
+        (1.0, 1.7, [({"a", "b"}, 4.1, 1.4, 0.7)]), (1.0, 1.4, []), (4.0, 4.0, []),
     ],
-)
+)  # fmt: skip
 def test_a_gap_in_a_wall_is_an_opening_where_a_person_can_pass(low, high, found):
     assert find(model(*walls_but(low, high))) == found
 
 
-def test_what_is_shut_or_far_apart_or_a_door_is_no_opening():
+def test_what_is_shut_is_no_opening_rooms_that_touch_are_open_and_are_entered_where_no_furniture_stands():
     to_the_middle = room("a", 0, 0, 4.1, 4), room("b", 4.1, 0, 8, 4)
     thin_wall, gap = rectangle(4.08, -0.1, 4.12, 4.1), walls_but(1.05, 1.95)
     assert find(model(rectangle(4.0, -0.1, 4.2, 4.1), spaces=to_the_middle)) == []
@@ -58,23 +50,13 @@ def test_what_is_shut_or_far_apart_or_a_door_is_no_opening():
     assert find(model(*gap, doors=(door("d", 4.1, 1.5, 0.0),))) == []
     assert find(model(spaces=(room("a", 0, 0, 4, 4), room("b", 4.8, 0, 8, 4)))) == []
     assert find(replace(model(), walls={})) == [], "without walls nothing is known"
-
-
-def test_rooms_that_touch_or_overlap_are_open_to_each_other():
     touching = room("a", 0, 0, 4, 4), room("b", 4, 0, 8, 4)
     overlapping = room("a", 0, 0, 4.3, 4), room("b", 4, 0, 8, 4)
     assert find(model(spaces=touching)) == [({"a", "b"}, 4.0, 2.0, 4.0)]
     assert [one[0] for one in find(model(spaces=overlapping))] == [{"a", "b"}]
-
-
-def test_a_room_in_a_corner_is_entered_from_both_sides():
-    """The edge between two rooms bends: each straight part is one."""
     hall = Space("a", "0", "a", "", (((0, 0), (8, 0), (8, 4), (4, 4), (4, 2), (0, 2)),), 0.0, 3.0)
     found = find(model(spaces=(hall, room("b", 0, 2, 4, 4))))
     assert {one[1:3] for one in found} == {(2.0, 2.0), (4.0, 3.0)}
-
-
-def test_the_part_without_furniture_is_passed_and_an_opening_full_of_it_is_one_still():
-    for y, width, found in ((1.2, 2.4, (3.2, 1.6)), (2.0, 4.2, (2.0, 4.0))):
+    for y, width, part in ((1.2, 2.4, (3.2, 1.6)), (2.0, 4.2, (2.0, 4.0))):
         counter = piece("counter", 4.1, y, breadth=0.6, width=width, height=0.9, angle_deg=0.0)
-        assert find(model(pieces=(counter,))) == [({"a", "b"}, 4.1, *found)]
+        assert find(model(pieces=(counter,))) == [({"a", "b"}, 4.1, *part)]

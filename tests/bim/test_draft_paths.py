@@ -40,12 +40,26 @@ def test_a_way_goes_closer_to_furniture_or_through_it_where_it_must(pieces, leas
     assert least <= way.distance(MultiPolygon(pieces)) < most
 
 
-def test_a_way_through_a_door_does_not_cut_the_wall():
+def test_a_way_goes_round_walls_and_furniture_and_does_not_cut_the_wall_at_a_door():
     """A door close to a corner, in a thick wall: the way bends in front of it."""
     room = build(box(0, 0, 8, 5), link("one", 0.6, -0.2), link("two", 7.4, -0.2))
     way = follow(find_ways(room, "room a", (4.0, 2.5)), "one", "two")
     openings = [box(x - 0.45, -0.4, x + 0.45, 0) for x in (0.6, 7.4)]
     assert MultiPolygon([box(0, 0, 8, 5), *openings]).buffer(0.01).covers(way)
+    wall = box(0, 2.4, 4.5, 2.6)
+    room = build(box(0, 0, 6, 5), link("one", 1.0, -0.05), link("two", 1.0, 5.05), solids=(wall,))
+    way = follow(find_ways(room, "room a", (3.0, 1.0)), "one", "two")
+    assert way.distance(wall) >= 0.45
+    table = box(1.5, 2, 4.5, 3)
+    room = build(box(0, 0, 6, 5), link("one", 3.0, -0.05), link("two", 3.0, 5.05), pieces=(table,))
+    way = follow(find_ways(room, "room a", (0.8, 1.0)), "one", "two")
+    assert way.distance(table) >= 0.45
+    assert 5.1 < way.length < 8
+    room = build(box(0, 0, 6, 5), link("one", 1.0, -0.05), link("two", 1.0, 5.05), solids=(box(-1, 2.4, 7, 2.6),))
+    ways = find_ways(room, "room a", (3.0, 1.0))
+    graph = nx.Graph(ways.found)
+    assert nx.has_path(graph, "one", "room a")
+    assert "two" not in graph or not nx.has_path(graph, "one", "two")
 
 
 BAR, ELL = box(0, 0, 20, 1.8), box(0, 0, 20, 1.8).union(box(18.2, 0, 20, 12))
@@ -82,26 +96,3 @@ def test_columns_and_niches_change_the_free_width():
     floor = BAR.difference(column).union(box(4, 1.8, 5, 2.4))
     assert measure_width(1.8, ((8.0, 0.9), (12.0, 0.9)), floor) == pytest.approx(1.2, abs=0.01)
     assert measure_width(1.8, ((2.0, 0.9), (8.0, 0.9)), floor) == pytest.approx(1.8, abs=0.01)
-
-
-def test_parts_of_a_room_that_a_wall_divides_are_not_joined():
-    room = build(box(0, 0, 6, 5), link("one", 1.0, -0.05), link("two", 1.0, 5.05), solids=(box(-1, 2.4, 7, 2.6),))
-    ways = find_ways(room, "room a", (3.0, 1.0))
-    graph = nx.Graph(ways.found)
-    assert nx.has_path(graph, "one", "room a")
-    assert "two" not in graph or not nx.has_path(graph, "one", "two")
-
-
-def test_a_way_goes_round_walls_inside_a_room():
-    wall = box(0, 2.4, 4.5, 2.6)
-    room = build(box(0, 0, 6, 5), link("one", 1.0, -0.05), link("two", 1.0, 5.05), solids=(wall,))
-    way = follow(find_ways(room, "room a", (3.0, 1.0)), "one", "two")
-    assert way.distance(wall) >= 0.45
-
-
-def test_a_way_goes_round_furniture_so_that_a_standing_piece_does_not_narrow_it():
-    table = box(1.5, 2, 4.5, 3)
-    room = build(box(0, 0, 6, 5), link("one", 3.0, -0.05), link("two", 3.0, 5.05), pieces=(table,))
-    way = follow(find_ways(room, "room a", (0.8, 1.0)), "one", "two")
-    assert way.distance(table) >= 0.45
-    assert 5.1 < way.length < 8

@@ -15,7 +15,6 @@ import assess
 from assess.bim.building_model import BuildingModel, Door, Piece, Space, Stair, Storey
 from assess.bim.draft_floor import FAR, build_plan, find_kinds, find_room_points, find_sides, link_door
 from assess.bim.draft_routes import DraftRoutes, draft_routes, measure_gap
-from assess.bim.import_workbook import build_workbook
 from assess.bim.model_rows import list_building
 from assess.bim.plan_shapes import box_at, direction_of, to_polygon
 from assess.model import Inventory
@@ -24,6 +23,7 @@ from assess.workbook.draft_names import is_draft
 from assess.workbook.names import key
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import DEFAULT_WIDTH
+from tests.bim.ifc_files import write_import
 from tests.bim.office_models import build_office, door, name_all, piece, rectangle
 from tests.workbooks import UNVERIFIED
 
@@ -44,7 +44,6 @@ def draft(model: BuildingModel, names: Mapping[str, str] | None = None) -> Draft
 
 @pytest.fixture(scope="module", params=["duplex", "large", *OFFICES])
 def drafted(request) -> tuple[BuildingModel, DraftRoutes]:
-    """Return a model, and its draft."""
     model = OFFICES[request.param] if request.param in OFFICES else request.getfixturevalue(request.param)
     return model, draft(model)
 
@@ -57,18 +56,13 @@ def of_duplex(duplex) -> DraftRoutes:
 # ---------------------------------------------------------------- what is looked at
 
 
-def find_places(model: BuildingModel, draft: DraftRoutes) -> dict[str, tuple[float, float]]:
-    """Return the positions of all places by name."""
-    names, rooms = name_all(model), find_room_points(model)
-    found = {names[one.key]: rooms[one.key] for one in model.spaces}
-    found |= {names[one.key]: (one.x, one.y) for one in model.doors}
-    found |= {names[f"{one.key} {one.end}"]: (one.x, one.y) for one in model.stairs}
-    return found | {one["place"]: (one["x"], one["y"]) for one in draft.places}
-
-
 def list_lines(model: BuildingModel, draft: DraftRoutes) -> Iterator[tuple[Mapping[str, Any], LineString, str]]:
     """Yield the segments on storeys with their lines and the keys of their storeys."""
-    places, storeys = find_places(model, draft), {one.name: one.key for one in model.storeys}
+    names, rooms, storeys = name_all(model), find_room_points(model), {one.name: one.key for one in model.storeys}
+    places = {names[one.key]: rooms[one.key] for one in model.spaces}
+    places |= {names[one.key]: (one.x, one.y) for one in model.doors}
+    places |= {names[f"{one.key} {one.end}"]: (one.x, one.y) for one in model.stairs}
+    places |= {one["place"]: (one["x"], one["y"]) for one in draft.places}
     for row in draft.routes:
         if "floor" in row:
             yield row, LineString([places[row["start"]], places[row["end"]]]), storeys[row["floor"]]
@@ -113,7 +107,7 @@ def test_every_room_is_joined_to_an_exit(drafted):
 # ---------------------------------------------------------------- routes
 
 
-def test_rooms_of_a_basement_go_up():
+def test_rooms_of_a_basement_go_up_the_nearest_exit_is_taken_and_each_step_leads_on_to_the_next():
     office = build_office(1, 3, storeys=3)
     lowered = replace(office, storeys=tuple(replace(one, elevation=one.elevation - 3.5) for one in office.storeys))
     out = [door("way out", -0.05, 6.1, 0.0, "1")]
@@ -126,9 +120,6 @@ def test_rooms_of_a_basement_go_up():
     assert found.unreached == ()
     flights = {(row["start"], row["end"]) for row in found.routes if "floor" not in row}
     assert flights == {("Stair 1 s0, foot", "Stair 1 s0, head"), ("Stair 2 s0, head", "Stair 2 s0, foot")}
-
-
-def test_the_nearest_exit_is_taken_and_each_step_leads_on_to_the_next():
     routes = draft(build_office(1, 8, storeys=2)).routes
     route = {row["start"]: row["route"] for row in routes}
     assert len(route) == len(routes)
@@ -140,7 +131,7 @@ def test_the_nearest_exit_is_taken_and_each_step_leads_on_to_the_next():
 # ---------------------------------------------------------------- widths, rooms, names
 
 
-def test_widths_are_known_at_doors_and_in_corridors_alone():
+def test_widths_are_known_at_doors_and_in_corridors_alone_and_names_are_each_their_own():
     for row in draft(build_office(1, 4)).routes:
         is_door = any(row[end].startswith("Door") for end in ("start", "end"))
         if is_door:
@@ -154,20 +145,7 @@ def test_widths_are_known_at_doors_and_in_corridors_alone():
             assert row["notes"] == "Clear width: between the walls of the model."
         else:
             assert row.keys().isdisjoint({"clear_width", "required_width", "notes"})
-
-
-def test_a_room_open_to_another_names_both(duplex, of_duplex):
-    """Furniture of either may fall into the segment."""
-    names = name_all(duplex)
-    by_name = {one.name: names[one.key] for one in duplex.spaces}
-    kitchen = next(row for row in of_duplex.routes if row["start"] == by_name["A103"])
-    assert set(kitchen["room"].split("; ")) >= {by_name["A103"], by_name["A102"]}
-    bath = next(row for row in of_duplex.routes if row["start"] == by_name["A104"])
-    assert bath["room"] == by_name["A104"]
-
-
-def test_names_are_each_their_own_and_one_with_a_semicolon_leaves_the_room_blank():
-    """It would split the name in two."""
+    # It would split the name in two.
     office = build_office(1, 3)
     names = {one: name.replace("r00", "r;0") for one, name in name_all(office).items()}
     names |= {"0": "Ground", "0 c0 r01": "Ground POINT 1"}
@@ -179,14 +157,14 @@ def test_names_are_each_their_own_and_one_with_a_semicolon_leaves_the_room_blank
     assert [row.get("room") for row in found.routes if row["start"] == "Room 0 c0 r;0"] == [None]
 
 
-# ---------------------------------------------------------------- remarks
-
-
-def say(found: DraftRoutes) -> list[str]:
-    return [str(one) for one in found.remarks]
-
-
-def test_remarks_tell_what_is_assumed(duplex, of_duplex):
+def test_a_room_open_to_another_names_both_and_remarks_tell_what_is_assumed(duplex, of_duplex):
+    """Furniture of either may fall into the segment."""
+    names = name_all(duplex)
+    by_name = {one.name: names[one.key] for one in duplex.spaces}
+    kitchen = next(row for row in of_duplex.routes if row["start"] == by_name["A103"])
+    assert set(kitchen["room"].split("; ")) >= {by_name["A103"], by_name["A102"]}
+    bath = next(row for row in of_duplex.routes if row["start"] == by_name["A104"])
+    assert bath["room"] == by_name["A104"]
     assert draft(duplex) == of_duplex, "the same each time"
     said = say(of_duplex)
     assert said[:2] == [
@@ -199,7 +177,14 @@ def test_remarks_tell_what_is_assumed(duplex, of_duplex):
     assert said[3] == f"No way out of 1 room was found in the model: {roof}."
 
 
-def test_without_rooms_or_ways_out_there_is_no_draft():
+# ---------------------------------------------------------------- remarks
+
+
+def say(found: DraftRoutes) -> list[str]:
+    return [str(one) for one in found.remarks]
+
+
+def test_without_rooms_or_ways_out_there_is_no_draft_balconies_are_no_exits_and_missing_walls_are_named():
     for change, said in (
         ({"spaces": ()}, "the model has no rooms."),
         ({"storeys": ()}, "the model has no rooms."),
@@ -210,6 +195,14 @@ def test_without_rooms_or_ways_out_there_is_no_draft():
         found = draft(replace(build_office(1, 2), **change))
         assert (found.places, found.routes) == ([], [])
         assert say(found)[0] == f"No evacuation routes were drafted: {said}"
+    office = build_office(1, 3, storeys=2)
+    upstairs = replace(office, doors=(*office.doors, door("balcony", 16.0, 18.0, 0.0, "1"),
+                                      door("terrace", -0.05, 6.1, 0.0, "1")))  # fmt: skip
+    assert "1 door of other storeys has a room on one side only: it does not count as an exit." in say(draft(upstairs))
+    office = replace(build_office(1, 3), walls={})
+    found = draft(office)
+    assert found.unreached == ()
+    assert "No walls on Level 0: openings without doors, of 0.6 m and more, are not found there." in say(found)
 
 
 # ---------------------------------------------------------------- any model
@@ -268,13 +261,22 @@ def test_any_model_gives_a_draft_that_holds_together(model):
 
 
 @pytest.mark.slow
-def test_rooms_that_lie_in_each_other_are_bounded():
+def test_rooms_that_lie_in_each_other_are_bounded_and_a_route_to_a_stair_ends_with_its_flight():
     count = 60
     spaces = tuple(Space(f"r{at}", "0", "", "", rectangle(0, 0, 20 + at * 0.01, 20), 0.0, 3.0) for at in range(count))
     doors = tuple(door(f"d{at}", 20.0, at * 20 / count, 0.0) for at in range(count))
     model = BuildingModel(source="many.ifc", schema="IFC4", storeys=STOREYS, spaces=spaces, doors=doors,
                           walls={"0": (rectangle(-1, -1, -0.9, 5),)})  # fmt: skip
     assert len(draft(model).routes) <= 10 * count
+    found = draft(build_office(1, 3, storeys=2))
+    (flight,) = [row for row in found.routes if "floor" not in row]
+    assert (flight["route"], flight["start"], flight["end"]) == (
+        "To Stair 1 s0, head (draft)", "Stair 1 s0, head", "Stair 1 s0, foot",
+    )  # fmt: skip
+    assert flight["notes"] == "Stair: fill in Clear width."
+    assert "clear_width" not in flight
+    starts = {row["start"] for row in found.routes if row["route"].startswith("To Door")}
+    assert "Stair 1 s0, foot" in starts  # from where the route of the ground storey goes on
 
 
 def test_a_room_with_many_corners_is_bounded():
@@ -323,7 +325,7 @@ def test_of_the_stated_width_of_a_door_and_its_opening_the_smaller_counts(stated
     assert link.clear == pytest.approx(clear)
 
 
-def test_two_columns_before_an_exit_bound_the_segment_to_it():
+def test_columns_before_an_exit_and_its_door_bound_the_segment_to_it_and_a_wall_beside_it_does_not():
     """The exit is 1.3 m wide, the columns stand 0.8 m apart."""
     for x in (6.0, 9.0, 9.7):
         assert measure_in(hall(column(x, 2.4), column(x, 3.6)), (4.0, 3.0), (10.05, 3.0)) == pytest.approx(0.8)
@@ -331,6 +333,20 @@ def test_two_columns_before_an_exit_bound_the_segment_to_it():
     last = next(row for row in draft(model).routes if row["end"] == "Door out")
     assert last["clear_width"] == pytest.approx(0.8, abs=0.011)
     assert "Clear width: between the walls of the model." in last["notes"]
+    for leaf, clear, words in (
+        (EXIT, 1.2, "the door's 1.30 m"),
+        (replace(EXIT, width=0.9, overall=1.8), 0.8, "the door's 0.90 m in the model less 0.1 m"),
+    ):
+        (row,) = draft(hall(doors=(leaf,))).routes
+        assert row["clear_width"] == pytest.approx(clear)
+        assert row["notes"].startswith(f"Clear width: {words}")
+    assert row["required_width"] == 0.8
+    assert measure_in(hall(), (4.0, 3.0), (10.05, 3.0)) == pytest.approx(1.3)
+    # A room of 0.85 m is narrow wherever one walks in it; a hall of 6 m is not.
+    slim = replace(HALL, area=rectangle(0, 0, 10, 0.85))
+    plan = build_plan(replace(hall(), spaces=(slim,), walls={}), LEVEL)
+    assert measure_gap(plan, "h", ((1.0, 0.3), (8.0, 0.3)), ()) == pytest.approx(0.85)
+    assert measure_in(hall(), (1.0, 0.3), (8.0, 0.3)) is None
 
 
 @pytest.mark.parametrize("turn", [-60.0, -40.0, 0.0, 40.0, 60.0])
@@ -348,14 +364,6 @@ def test_columns_that_are_passed_at_an_angle_are_as_far_apart(turn):
     assert measure_in(model, (5.0 - x, 3.0 - y), (5.0 + x, 3.0 + y)) == pytest.approx(0.8)
 
 
-def test_a_segment_near_one_wall_is_as_wide_as_to_the_other():
-    """A room of 0.85 m is narrow wherever one walks in it; a hall of 6 m is not."""
-    slim = replace(HALL, area=rectangle(0, 0, 10, 0.85))
-    plan = build_plan(replace(hall(), spaces=(slim,), walls={}), LEVEL)
-    assert measure_gap(plan, "h", ((1.0, 0.3), (8.0, 0.3)), ()) == pytest.approx(0.85)
-    assert measure_in(hall(), (1.0, 0.3), (8.0, 0.3)) is None
-
-
 # ---------------------------------------------------------------- drafted routes in use
 
 
@@ -363,13 +371,9 @@ SHAKEN = {"shaking": "MMI VIII, severe"}
 
 
 def build(model: BuildingModel, folder: Path) -> Inventory:
-    """Write the workbook of a model with its plans, and read it."""
     found = list_building(model, "draft")
     found = replace(found, building={**found.building, **SHAKEN})
-    for name, data in found.files.items():
-        (folder / name).write_bytes(data)
-    (folder / "book.xlsx").write_bytes(build_workbook(found))
-    return read_inventory(folder / "book.xlsx")
+    return read_inventory(write_import(found, folder))
 
 
 @pytest.fixture(scope="module")
@@ -384,42 +388,3 @@ def test_a_draft_is_a_workbook_without_errors(published, tmp_path):
     assert len(inventory.routes) > 0
     drafted = [one for one in inventory.problems if "drafted from a building model" in one.message]
     assert [one.severity for one in drafted] == ["warning"]
-
-
-@pytest.mark.slow
-def test_a_route_to_a_stair_ends_with_its_flight():
-    found = draft(build_office(1, 3, storeys=2))
-    (flight,) = [row for row in found.routes if "floor" not in row]
-    assert (flight["route"], flight["start"], flight["end"]) == (
-        "To Stair 1 s0, head (draft)", "Stair 1 s0, head", "Stair 1 s0, foot",
-    )  # fmt: skip
-    assert flight["notes"] == "Stair: fill in Clear width."
-    assert "clear_width" not in flight
-    starts = {row["start"] for row in found.routes if row["route"].startswith("To Door")}
-    assert "Stair 1 s0, foot" in starts  # from where the route of the ground storey goes on
-
-
-def test_balconies_are_no_exits():
-    office = build_office(1, 3, storeys=2)
-    upstairs = replace(office, doors=(*office.doors, door("balcony", 16.0, 18.0, 0.0, "1"),
-                                      door("terrace", -0.05, 6.1, 0.0, "1")))  # fmt: skip
-    assert "1 door of other storeys has a room on one side only: it does not count as an exit." in say(draft(upstairs))
-
-
-def test_the_door_bounds_its_segment():
-    for leaf, clear, words in (
-        (EXIT, 1.2, "the door's 1.30 m"),
-        (replace(EXIT, width=0.9, overall=1.8), 0.8, "the door's 0.90 m in the model less 0.1 m"),
-    ):
-        (row,) = draft(hall(doors=(leaf,))).routes
-        assert row["clear_width"] == pytest.approx(clear)
-        assert row["notes"].startswith(f"Clear width: {words}")
-    assert row["required_width"] == 0.8
-    assert measure_in(hall(), (4.0, 3.0), (10.05, 3.0)) == pytest.approx(1.3)
-
-
-def test_storeys_without_walls_are_named():
-    office = replace(build_office(1, 3), walls={})
-    found = draft(office)
-    assert found.unreached == ()
-    assert "No walls on Level 0: openings without doors, of 0.6 m and more, are not found there." in say(found)

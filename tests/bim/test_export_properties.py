@@ -68,7 +68,7 @@ def complain(path: Path) -> list[str]:
     return sorted(str(one["message"]) for one in logger.statements)
 
 
-def test_every_original_byte_is_still_there(exported):
+def test_every_original_byte_is_still_there_and_no_two_have_one_global_id(exported):
     before, after = DUPLEX.read_bytes(), exported.read_bytes()
     at = before.rindex(b"ENDSEC;")
     assert after.startswith(before[:at])
@@ -76,9 +76,12 @@ def test_every_original_byte_is_still_there(exported):
     added = after[at : len(after) - len(before) + at]
     assert added.isascii()
     assert added.startswith(b"#39115=")
+    model = ifcopenshell.open(str(exported))
+    ids = [one.GlobalId for one in model.by_type("IfcRoot")]
+    assert len(ids) == len(set(ids))
 
 
-def test_values_stand_on_the_right_elements(simulated, exported):
+def test_values_classes_and_fixings_of_the_report_stand_on_the_right_elements(simulated, exported):
     sets, rows = read_sets(exported), read_rows(simulated)
     assert sets.keys() == {one["source_id"] for one in CUPBOARDS}
     for key, found in sets.items():
@@ -89,9 +92,6 @@ def test_values_stand_on_the_right_elements(simulated, exported):
         assert found["PFA_g"] == row["pfa_g"]
         assert (found["Breadth_cm"], found["Height_cm"]) == (row["breadth_cm"], row["height_cm"])
         assert found["AssessedBy"].startswith("assess ")
-
-
-def test_a_class_is_that_of_the_report_and_what_has_none_says_so(simulated, exported):
     sets, differs = read_sets(exported), 0
     assert (sets[CUPBOARD_1]["RiskClass"], sets[CUPBOARD_1]["Basis"]) == ("very high", "simulated")
     assert sets[HELD]["RiskClass"] == "depends on its anchor (free-standing: very high)"
@@ -105,6 +105,13 @@ def test_a_class_is_that_of_the_report_and_what_has_none_says_so(simulated, expo
         assert upper is None or f", could be {upper}" in found["RiskClass"]
         differs += upper is not None
     assert differs < len(sets)
+    sets = read_sets(exported)
+    found = sets[CUPBOARD_1]
+    assert (found["MayBlockRoutes"], found["FixingDetail"]) == ("Scala", "L-bracket to studs")
+    assert found["FixOrder"] in (1, 2)
+    assert found["FixingTension84_kN"] > found["FixingTension_kN"] > 0
+    assert found["BaseShear_kN"] > 0
+    assert "FixOrder" not in sets[HELD]
 
 
 def test_a_class_by_which_programs_filter_tells_what_it_could_be(simulated, flat, tmp_path):
@@ -117,23 +124,35 @@ def test_a_class_by_which_programs_filter_tells_what_it_could_be(simulated, flat
 
 
 @pytest.mark.slow
-def test_classes_of_the_formula_are_called_so(simulated, flat, tmp_path):
+def test_classes_of_the_formula_are_called_so_and_a_second_export_is_refused(simulated, flat, tmp_path):
     """Where motions may be too weak, or a piece was left out of the simulation; here none is: files are edited."""
     sets = read_exported(write_adopted(simulated, tmp_path, {"method": "fema_p58"}), flat)
     assert sets[SOFA]["RiskClass"] == "unconfirmed (formula: high)"
     accents = Path(shutil.copy(flat, tmp_path / "modèle è.ifc"))
     sets = read_exported(write_adopted(simulated, tmp_path, {"basis": "formula"}), accents)
     assert sets[CUPBOARD_1]["RiskClass"] == "very high by formula only"
+    exported = tmp_path / "out.ifc"
+    exported.write_bytes(export(simulated, flat, with_topics=False).model)
+    message = r"out.ifc holds Assess_OverturningRisk already, on 4 of the pieces \(the first is Armadio d'angolo"
+    with pytest.raises(ModelError, match=message):
+        export(simulated, exported)
+    assert export(simulated, exported, with_properties=False).topics.count > 0
 
 
 @pytest.mark.slow
-def test_by_formula_alone_there_is_no_interval_and_an_assumed_shaking_is_called_assumed(flat, tmp_path):
+def test_by_formula_alone_there_is_no_interval_and_pieces_of_another_workbook_can_join_a_model(flat, tmp_path):
     floors = [{"floor": "1", "elevation": 0.0}, {"floor": "2", "elevation": 3.1}]
     results = write_results(tmp_path, CUPBOARDS, floors, building={"shaking": "MMI VIII, severe", "height": 6.2})
     found = read_exported(results, flat)[CUPBOARD_1]
     assert found["Scenario"] == "MMI VIII, severe (assumed)"
     assert (found["Basis"], "by formula" in found["RiskClass"]) == ("formula", False)
     assert {"ProbabilityLow", "ProbabilityHigh"}.isdisjoint(found)
+    joined = tmp_path / "joined.ifc"
+    joined.write_bytes(export(write_results(tmp_path / "a", CUPBOARDS[:2]), flat, with_topics=False).model)
+    second = export(write_results(tmp_path / "b", CUPBOARDS[2:]), joined, with_topics=False)
+    joined.write_bytes(second.model)
+    assert len(read_sets(joined)) == 4
+    assert complain(joined) == complain(flat)
 
 
 @pytest.mark.slow
@@ -147,25 +166,9 @@ def test_texts_come_back_with_their_accents_and_in_the_language_in_use(simulated
         assert read_exported(simulated, flat)[CUPBOARD_1]["RiskClass"] == "molto alto"
 
 
-def test_a_piece_of_the_schedule_has_what_an_engineer_needs(exported):
-    sets = read_sets(exported)
-    found = sets[CUPBOARD_1]
-    assert (found["MayBlockRoutes"], found["FixingDetail"]) == ("Scala", "L-bracket to studs")
-    assert found["FixOrder"] in (1, 2)
-    assert found["FixingTension84_kN"] > found["FixingTension_kN"] > 0
-    assert found["BaseShear_kN"] > 0
-    assert "FixOrder" not in sets[HELD]
-
-
 @pytest.mark.long  # the gate does the same with small models
 def test_the_model_has_no_fault_that_it_did_not_have(exported):
     assert complain(exported) == complain(DUPLEX)
-
-
-def test_no_two_have_one_global_id(exported):
-    model = ifcopenshell.open(str(exported))
-    ids = [one.GlobalId for one in model.by_type("IfcRoot")]
-    assert len(ids) == len(set(ids))
 
 
 @pytest.mark.slow
@@ -206,9 +209,6 @@ def test_an_ifc4_model_with_and_without_owner_histories(tmp_path, has_owner):
     assert complain(out) == complain(model)
 
 
-# ---------------------------------------------------------------- what cannot be written
-
-
 NO_PIECES = {
     "IfcWall": "2O2Fr$t4X7Zf8NOew3FKau", "IfcWallStandardCase": "2O2Fr$t4X7Zf8NOew3FNld",
     "IfcSlab": "2O2Fr$t4X7Zf8NOew3FK4F", "IfcRoof": "0jf0rYHfX3RAB3bSIRjmxl", "IfcDoor": DOOR_B202,
@@ -221,7 +221,7 @@ NO_PIECES = {
 
 
 @pytest.mark.slow
-def test_nothing_is_written_on_what_is_no_furniture_or_not_in_the_model(tmp_path):
+def test_nothing_is_written_on_what_is_no_furniture_or_not_in_the_model_unless_an_import_takes_it_by_name(tmp_path):
     others = [piece(name, "1", key, 1.0 + at, 1) for at, (name, key) in enumerate(NO_PIECES.items())]
     others += [
         piece("No id", "1", None, 1, 1),
@@ -236,10 +236,6 @@ def test_nothing_is_written_on_what_is_no_furniture_or_not_in_the_model(tmp_path
     out.write_bytes(found.model)
     assert read_sets(out).keys() == {one["source_id"] for one in CUPBOARDS[:2]}
     assert found.topics.unplaced > 0, "entries of such pieces"
-
-
-@pytest.mark.slow
-def test_what_an_import_takes_by_name_may_be_a_piece(tmp_path):
     writer = ModelWriter("IFC4")
     storey = writer.storey()
     items: list[dict[str, Any]] = []
@@ -272,26 +268,6 @@ def test_of_pieces_with_one_source_id_the_worst_is_written(flat, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_model_that_was_exported_before_is_refused(simulated, flat, tmp_path):
-    exported = tmp_path / "out.ifc"
-    exported.write_bytes(export(simulated, flat, with_topics=False).model)
-    message = r"out.ifc holds Assess_OverturningRisk already, on 4 of the pieces \(the first is Armadio d'angolo"
-    with pytest.raises(ModelError, match=message):
-        export(simulated, exported)
-    assert export(simulated, exported, with_properties=False).topics.count > 0
-
-
-@pytest.mark.slow
-def test_pieces_of_another_workbook_can_join_a_model(flat, tmp_path):
-    joined = tmp_path / "joined.ifc"
-    joined.write_bytes(export(write_results(tmp_path / "a", CUPBOARDS[:2]), flat, with_topics=False).model)
-    second = export(write_results(tmp_path / "b", CUPBOARDS[2:]), joined, with_topics=False)
-    joined.write_bytes(second.model)
-    assert len(read_sets(joined)) == 4
-    assert complain(joined) == complain(flat)
-
-
-@pytest.mark.slow
 def test_results_that_are_not_of_this_model_are_refused(tmp_path):
     desks = [piece(name, "1", key, x, y) for name, (key, x, y) in DESKS.items()]
     for items, error, message in (
@@ -317,14 +293,10 @@ def test_a_damaged_or_missing_model_is_refused(tmp_path, simulated):
         export(simulated, tmp_path / "gone.ifc")
 
 
-# ---------------------------------------------------------------- lines added to a step file
-
-
 MODEL = b"ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n#1=IFCLABEL('ENDSEC;');\nENDSEC;\nEND-ISO-10303-21;\n"
 
 
 def read_back(value: str) -> Any:
-    """Return a value as ifcopenshell reads it."""
     header = "HEADER;FILE_DESCRIPTION((''),'2;1');FILE_NAME('','',(''),(''),'','','');FILE_SCHEMA(('IFC4'));ENDSEC;"
     model = ifcopenshell.file.from_string(
         f"ISO-10303-21;{header}DATA;#1=IFCPROPERTYSINGLEVALUE('N',$,{value},$);ENDSEC;END-ISO-10303-21;"
@@ -342,9 +314,15 @@ def test_every_text_comes_back_from_ascii_on_one_line(text):
     assert read_back(written) == plain_line(text)
 
 
-def test_a_label_is_no_longer_than_the_schema_allows():
+def test_a_label_is_no_longer_than_the_schema_allows_and_identifiers_are_those_of_their_numbers():
     value = read_back(write_label("è" * 300))
     assert (len(value), value[-2:]) == (LONGEST_LABEL, "è…")
+    for at in range(50):
+        found = make_global_id("property set", str(at))
+        assert ifcopenshell.guid.expand(found) == make_uuid("property set", str(at)).hex
+        assert (len(found), found[0] in "0123") == (22, True)
+    assert make_global_id("a", "b") == make_global_id("a", "b") != make_global_id("a", "c")
+    assert make_global_id("a", "b") != make_global_id("b", "a")
 
 
 @settings(max_examples=40)
@@ -353,15 +331,6 @@ def test_every_number_comes_back(number):
     text = write_real(number)
     assert re.fullmatch(r"IFCREAL\(-?\d+\.\d*(E-?\d+)?\)", text)
     assert read_back(text) == number
-
-
-def test_identifiers_are_those_of_their_numbers():
-    for at in range(50):
-        found = make_global_id("property set", str(at))
-        assert ifcopenshell.guid.expand(found) == make_uuid("property set", str(at)).hex
-        assert (len(found), found[0] in "0123") == (22, True)
-    assert make_global_id("a", "b") == make_global_id("a", "b") != make_global_id("a", "c")
-    assert make_global_id("a", "b") != make_global_id("b", "a")
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n"])

@@ -69,7 +69,6 @@ def folder(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def page(folder) -> str:
-    """Return the HTML report of the building."""
     inventory = read_inventory(folder / "book.xlsx", building=SHAKEN)
     assert len(inventory.items) == 2 * len(NAMES)
     return write_html(assess.run(inventory, UNVERIFIED), folder / "out")
@@ -86,7 +85,7 @@ def test_the_terminal_shows_them_harmless_and_cut_and_the_workbook_lacks_the_sha
     assert not UNSAFE.search(said + done.output)
 
 
-def test_texts_of_the_workbook_are_no_formulas(folder):
+def test_texts_of_the_workbook_are_no_formulas_and_plans_stay_in_the_folder_and_hold_no_names(folder):
     book = openpyxl.load_workbook(folder / "book.xlsx")
     formulas = [str(cell.value) for page in book for row in page.iter_rows() for cell in row if cell.data_type == "f"]
     assert not [one for one in formulas if re.search("HYPERLINK|evil|cmd|SUM\\(A1\\)", one)]
@@ -95,9 +94,6 @@ def test_texts_of_the_workbook_are_no_formulas(folder):
     assert floors['=HYPERLINK("http://evil.example","x")'] == floors["+1+1"] == floors["@SUM(A1)"] == "s"
     texts = [str(cell.value) for page in book for row in page.iter_rows() for cell in row if cell.data_type == "s"]
     assert not [one for one in texts if UNSAFE.search(one)]
-
-
-def test_plans_stay_in_the_folder_and_hold_no_names(folder):
     plans = sorted(folder.glob("*.svg"))
     assert len(plans) == len(NAMES)
     others = {"a.ifc", "a-import.txt", "book.xlsx", "said", "out"}

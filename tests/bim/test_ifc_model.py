@@ -20,10 +20,7 @@ def count(model: BuildingModel, what: str) -> dict[str, int]:
     return dict(Counter(names[one.storey] for one in getattr(model, what)))
 
 
-# ---------------------------------------------------------------- published models
-
-
-def test_duplex(duplex):
+def test_duplex_of_which_47_of_61_pieces_stand_on_the_floor(duplex):
     assert (duplex.schema, duplex.name, duplex.azimuth_deg) == ("IFC2X3", "Duplex Apartment", None)
     assert [(one.name, round(one.elevation, 3)) for one in duplex.storeys] == [
         ("T/FDN", -1.25), ("Level 1", 0.0), ("Level 2", 3.1), ("Roof", 6.0),
@@ -36,9 +33,6 @@ def test_duplex(duplex):
     assert min(x for x, _ in corners) == pytest.approx(0, abs=0.01)
     assert max(x for x, _ in corners) == pytest.approx(8.8, abs=0.1)
     assert duplex.windows[duplex.storeys[1].key]
-
-
-def test_47_of_61_pieces_of_duplex_stand_on_the_floor(duplex):
     left = [one for one in duplex.skipped if one.is_furniture]
     assert (len(duplex.pieces), sum(one.count for one in left)) == (47, 14)
     assert {str(one.reason) for one in left} == {"not on the floor: its lowest point is more than 15 cm above it"}
@@ -73,9 +67,6 @@ def test_proxies_are_taken_by_name():
         read_model(path, "a.ifc", ("IfcTable2",))
 
 
-# ---------------------------------------------------------------- units, schemas, axes
-
-
 @pytest.mark.parametrize(
     ("schema", "units", "scale"),
     [("IFC2X3", "FOOT", 1 / 0.3048), ("IFC4", "METRE", 1.0), ("IFC4", "MILLI", 1000.0), ("IFC4X3", "MILLI", 1000.0)],
@@ -95,7 +86,7 @@ def test_every_schema_and_unit_gives_metres(tmp_path, schema, units, scale):
     assert found.schema.startswith(schema)
 
 
-def test_a_turned_piece_keeps_its_sizes_and_tells_its_angle(tmp_path):
+def test_sizes_angles_and_supports_of_pieces_that_are_turned_askew_or_tilted(tmp_path):
     model, _, room = one_room()
     angles = [0, 30, 75, 90, 120, 200, 315]
     for angle in angles:
@@ -107,10 +98,7 @@ def test_a_turned_piece_keeps_its_sizes_and_tells_its_angle(tmp_path):
         assert (piece.breadth, piece.width) == pytest.approx((0.4, 0.8), abs=1e-4)
         assert -90 <= piece.angle_deg < 90
         assert math.cos(math.radians(2 * (piece.angle_deg - angle))) == pytest.approx(1, abs=1e-6)
-
-
-def test_a_piece_askew_in_its_own_axes_or_tilted_has_the_smallest_rectangle(tmp_path):
-    """A ladder of boxes along a diagonal: in its own axes it would be as deep as it is wide."""
+    # A ladder of boxes along a diagonal: in its own axes it would be as deep as it is wide.
     model, _, room = one_room()
     boxes = [(at, at, 0, 0.1, 0.1, 1.0) for at in (0, 0.25, 0.5, 0.75, 1.0)]
     model.piece("Screen", *boxes, within=room, at=(2, 1, 0))
@@ -121,10 +109,7 @@ def test_a_piece_askew_in_its_own_axes_or_tilted_has_the_smallest_rectangle(tmp_
     assert screen.angle_deg == pytest.approx(-45, abs=0.1)
     assert board.width == pytest.approx(2.0, abs=1e-3)
     assert 0.2 < board.breadth < 0.3
-
-
-def test_supports_are_what_touches_the_floor(tmp_path):
-    """A table on two feet: 40 cm apart along its breadth of 90 cm."""
+    # A table on two feet: 40 cm apart along its breadth of 90 cm.
     model, _, room = one_room()
     top = (0, 0, 0.7, 0.9, 1.6, 0.03)
     feet = [(side * 0.17, end * 0.7, 0, 0.06, 0.06, 0.7) for side in (-1, 1) for end in (-1, 1)]
@@ -176,10 +161,7 @@ def test_a_model_far_from_its_origin_is_brought_near_and_true_north_tells_the_di
     assert found.azimuth_deg == pytest.approx(180), "true north along -X: X points south"
 
 
-# ---------------------------------------------------------------- what is a piece
-
-
-def test_what_is_no_piece_is_left_out_with_the_reason(tmp_path):
+def test_what_is_no_piece_or_has_no_sensible_size_is_left_out_with_the_reason(tmp_path):
     model, storey, room = one_room()
     model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
     model.piece("Wall unit", SHELF, within=room, at=(3, 1, 1.2))
@@ -193,9 +175,16 @@ def test_what_is_no_piece_is_left_out_with_the_reason(tmp_path):
         ("IfcBuildingElementProxy Tree", "its class is not furniture", False),
         ("IfcTransportElement Lift", "its class is not furniture", False),
     }  # fmt: skip
+    model, _, room = one_room()
+    model.piece("Sheet", (0, 0, 0, 1e-9, 1.0, 1.0), within=room, at=(2, 1, 0))
+    model.piece("Mountain", (0, 0, 0, 1e7, 1e7, 1e7), within=room, at=(2, 1, 0))
+    model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
+    found = read(model, tmp_path)
+    assert "Shelf" in {one.name for one in found.pieces}
+    assert all(math.isfinite(one.x + one.y + one.breadth + one.width + one.height) for one in found.pieces)
 
 
-def test_in_ifc2x3_an_appliance_is_known_by_its_type(tmp_path):
+def test_types_are_named_as_programs_show_them_and_tell_an_appliance_in_ifc2x3(tmp_path):
     model, _, room = one_room("IFC2X3")
     fridge = model.element("IfcFlowTerminal", "Fridge:1", SHELF, within=room, at=(2, 1, 0))
     model.element("IfcFlowTerminal", "Mirror", SHELF, within=room, at=(3, 1, 0))
@@ -203,9 +192,6 @@ def test_in_ifc2x3_an_appliance_is_known_by_its_type(tmp_path):
     found = read(model, tmp_path)
     assert [one.name for one in found.pieces] == ["Fridge:1"]
     assert [one.type for one in found.skipped] == ["IfcFlowTerminal Mirror"]
-
-
-def test_types_are_named_as_programs_show_them(tmp_path):
     model, _, room = one_room()
     plain = model.piece("Stuhl-017", SHELF, within=room, at=(1, 1, 0))
     model.typed("IfcFurnitureType", "Stuhl 4", plain)
@@ -228,10 +214,7 @@ def test_a_raised_floor_of_a_room_counts_and_a_piece_of_no_storey_stands_on_the_
     assert (found["Outside"].storey, found["Outside"].space) == (upper.GlobalId, "")
 
 
-# ---------------------------------------------------------------- models that lack something
-
-
-def test_without_rooms_the_storey_is_the_floor(tmp_path):
+def test_models_without_rooms_or_storeys_and_those_that_cannot_be_used_at_all(tmp_path):
     model = ModelWriter()
     storey = model.storey("Level 3", 6.0)
     model.piece("Shelf", SHELF, within=storey, at=(2, 1, 6.0))
@@ -240,9 +223,6 @@ def test_without_rooms_the_storey_is_the_floor(tmp_path):
     assert [str(text) for text in found.remarks] == [
         "The model has no rooms (IfcSpace): Room stays blank, and heights are taken from the storeys."
     ]
-
-
-def test_without_storeys_all_is_on_one_floor_with_a_warning(tmp_path):
     model = ModelWriter()
     room = model.space(model.building, (3, 2, 0, 6, 4, 3))
     model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
@@ -252,6 +232,10 @@ def test_without_storeys_all_is_on_one_floor_with_a_warning(tmp_path):
     assert [str(text) for text in found.warnings] == [
         "The model has no storeys: all of it was put on one floor, 1. Check Floor in Items."
     ]
+    for message in ("has no unit of length", "holds neither storeys nor rooms, furniture or walls with a shape"):
+        model = ModelWriter(units=None if "unit" in message else "METRE")
+        with pytest.raises(ModelError, match=f"a.ifc {message}"):
+            read(model, tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -274,26 +258,6 @@ def test_elevations_and_placements_of_storeys_agree_or_are_warned_of(tmp_path, s
     assert [one.elevation for one in found.storeys] == pytest.approx(elevations)
     told = "Elevation in the model differs from where these storeys are placed, which was taken: b, c."
     assert any(told in text for text in found.warnings) == warned
-
-
-def test_what_cannot_be_used_at_all(tmp_path):
-    for message in ("has no unit of length", "holds neither storeys nor rooms, furniture or walls with a shape"):
-        model = ModelWriter(units=None if "unit" in message else "METRE")
-        with pytest.raises(ModelError, match=f"a.ifc {message}"):
-            read(model, tmp_path)
-
-
-def test_shapes_with_no_breadth_and_numbers_beyond_bounds_end_in_words(tmp_path):
-    model, _, room = one_room()
-    model.piece("Sheet", (0, 0, 0, 1e-9, 1.0, 1.0), within=room, at=(2, 1, 0))
-    model.piece("Mountain", (0, 0, 0, 1e7, 1e7, 1e7), within=room, at=(2, 1, 0))
-    model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
-    found = read(model, tmp_path)
-    assert "Shelf" in {one.name for one in found.pieces}
-    assert all(math.isfinite(one.x + one.y + one.breadth + one.width + one.height) for one in found.pieces)
-
-
-# ---------------------------------------------------------------- floors that are placed elsewhere, pieces of parts
 
 
 @pytest.mark.parametrize("site", [0.0, 450.0])

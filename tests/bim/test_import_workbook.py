@@ -13,7 +13,7 @@ def _building(**more: object) -> ImportedBuilding:
     return ImportedBuilding(**(rows | more))
 
 
-def test_rows_of_every_sheet_come_back() -> None:
+def test_rows_of_every_sheet_come_back_in_the_language_in_use() -> None:
     """Positions, outlines and routes are what building models tell, beyond COBie."""
     data = build_workbook(
         _building(
@@ -30,22 +30,16 @@ def test_rows_of_every_sheet_come_back() -> None:
     assert list(inventory.places[0].outline) == [(0, 0), (6, 0), (6, 4), (0, 4)]
     assert (inventory.routes[0].start, inventory.building.latitude) == ("Hall", 45.5)
     assert len(inventory.catalogue) > 100
+    with speaking(load_catalogue("it")):
+        data = build_workbook(_building(types=[{"type": "Desk", "breadth": 60.0, "height": 75.0}]))
+    assert read_inventory(data, building=SHAKEN).language == "it"
 
 
-def test_long_names_and_those_alike_in_another_letter_case_are_told_apart() -> None:
+def test_long_names_and_those_alike_in_another_letter_case_are_told_apart_and_rooms_of_a_segment_not_cut() -> None:
     first, second = name_apart(["x" * 500] * 2)
     assert (len(first), len(second)) == (LONGEST_NAME, LONGEST_NAME)
     assert second.endswith("x (2)")
     assert name_apart(["Desk", "desk", "Desk (2)", "Desk"]) == ["Desk", "desk (2)", "Desk (2) (2)", "Desk (3)"]
-
-
-def test_the_rooms_of_a_segment_are_not_cut():
     rooms = "; ".join(f"{number} Waiting area and reception" for number in range(30))
     rows = list_rows(ImportedBuilding(source="a", routes=[{"route": "A", "segment": "1", "room": rooms}]))
     assert rows["Routes"][0]["room"] == rooms
-
-
-def test_the_workbook_speaks_the_language_in_use() -> None:
-    with speaking(load_catalogue("it")):
-        data = build_workbook(_building(types=[{"type": "Desk", "breadth": 60.0, "height": 75.0}]))
-    assert read_inventory(data, building=SHAKEN).language == "it"

@@ -4,10 +4,9 @@ import pytest
 
 from assess.bim.building_model import BuildingModel
 from assess.bim.ifc_model import read_model
-from assess.bim.import_workbook import build_workbook
 from assess.bim.model_rows import list_building
 from assess.workbook.read import read_inventory
-from tests.bim.ifc_files import ModelWriter, one_room, read
+from tests.bim.ifc_files import ModelWriter, one_room, read, write_import
 
 SHELF = (0, 0, 0, 0.4, 0.8, 1.9)
 SHAKEN = {"shaking": "MMI VIII, severe"}
@@ -15,11 +14,7 @@ SHAKEN = {"shaking": "MMI VIII, severe"}
 
 def check(model: BuildingModel, folder):
     """Return the inventory of a model's workbook, with its plans beside it."""
-    found = list_building(model)
-    for name, data in found.files.items():
-        (folder / name).write_bytes(data)
-    (folder / "book.xlsx").write_bytes(build_workbook(found))
-    return read_inventory(folder / "book.xlsx", building=SHAKEN)
+    return read_inventory(write_import(list_building(model), folder), building=SHAKEN)
 
 
 def test_what_was_forgotten_at_the_origin_leaves_the_building_where_it_is(tmp_path):
@@ -73,7 +68,7 @@ def test_an_elevation_that_no_workbook_takes_is_left_blank(tmp_path, elevation):
     assert "height" not in found.building
 
 
-def test_elements_that_share_an_identifier_stay_apart(tmp_path):
+def test_elements_that_share_an_identifier_stay_apart_and_a_storey_without_one_is_known_by_its_number(tmp_path):
     model, storey, room = one_room()
     other = model.space(storey, (9, 2, 0, 6, 4, 3), "102", "Store")
     doors = [model.element("IfcDoor", "Door", (x, 0, 0, 0.9, 0.1, 2.1), within=storey) for x in (2, 9)]
@@ -86,9 +81,6 @@ def test_elements_that_share_an_identifier_stay_apart(tmp_path):
     assert sorted(one.room for one in inventory.items) == ["101 Office", "102 Store"]
     ids = sorted(one.more["source_id"] for one in inventory.items)
     assert ids == [pieces[0].GlobalId, f"{pieces[0].GlobalId} #{pieces[1].id()}"]
-
-
-def test_a_storey_without_identifier_is_known_by_its_number_and_a_latitude_beyond_the_pole_is_none(tmp_path):
     model, storey, room = one_room()
     model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
     model.site.RefLatitude, model.site.RefLongitude = (92, 0, 0), (9, 0, 0)

@@ -17,23 +17,23 @@ from assess.progress import SILENT, Progress
 ON_LINUX = pytest.mark.skipif(sys.platform != "linux", reason="only Linux limits addresses")
 
 
-def test_it_returns_what_the_work_returns_from_another_process():
+def test_it_returns_and_raises_what_the_work_in_another_process_does():
     assert run_apart("a.ifc", SILENT, divmod, 17, 5) == (3, 2)
     assert run_apart("a.ifc", SILENT, os.getpid) != os.getpid()
+    with pytest.raises(WorkbookError, match="not an Excel workbook") as caught:
+        run_apart("a.ifc", SILENT, read_cobie, b"no workbook", "a.xlsx")
+    assert caught.value.problems
 
 
-def test_what_a_killed_process_left_is_removed_by_the_next(tmp_path, monkeypatch):
+def test_what_a_killed_process_left_is_removed_and_a_file_of_the_users_replaces_no_module(tmp_path, monkeypatch):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     (tmp_path / f"{model_process.PREFIX}left").mkdir()
     (tmp_path / f"{model_process.PREFIX}left" / "order").write_bytes(b"a building")
     assert run_apart("a.ifc", SILENT, divmod, 17, 5) == (3, 2)
     assert list(tmp_path.iterdir()) == []
-
-
-def test_it_raises_what_the_work_raises_with_all_that_it_holds():
-    with pytest.raises(WorkbookError, match="not an Excel workbook") as caught:
-        run_apart("a.ifc", SILENT, read_cobie, b"no workbook", "a.xlsx")
-    assert caught.value.problems
+    (tmp_path / "pickle.py").write_text("raise SystemExit(7)", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert run_apart("a.ifc", SILENT, divmod, 17, 5) == (3, 2)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no signals of this kind")
@@ -77,9 +77,3 @@ def test_a_cancel_stops_the_process(tmp_path):
         run_apart("a.ifc", Progress(cancel=cancel), eval, WORK_ON.format(path=str(cancel.path)))
     with pytest.raises(ProcessLookupError):
         os.kill(int(cancel.path.read_text()), 0)
-
-
-def test_a_file_of_the_users_takes_the_place_of_no_module(tmp_path, monkeypatch):
-    (tmp_path / "pickle.py").write_text("raise SystemExit(7)", encoding="utf-8")
-    monkeypatch.chdir(tmp_path)
-    assert run_apart("a.ifc", SILENT, divmod, 17, 5) == (3, 2)

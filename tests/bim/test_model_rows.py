@@ -23,20 +23,14 @@ def model(**more: object) -> BuildingModel:
     return BuildingModel(**{**values, **more})
 
 
-# ---------------------------------------------------------------- sizes
-
-
 @pytest.mark.parametrize(
     ("supports", "sizes", "angle", "is_inset"),
     [
-        ((0.4, 0.8), (40.0, 80.0), 30.0, False),
-        ((0.397, 0.8), (40.0, 80.0), 30.0, False),
-        ((0.3, 0.8), (30.0, 80.0), 30.0, True),
-        ((0.3, 0.35), (30.0, 80.0), 30.0, True),
-        ((0.4, 0.25), (25.0, 40.0), -60.0, True),
-        ((0.38, 0.25), (25.0, 40.0), -60.0, True),
+        ((0.4, 0.8), (40.0, 80.0), 30.0, False), ((0.397, 0.8), (40.0, 80.0), 30.0, False),
+        ((0.3, 0.8), (30.0, 80.0), 30.0, True), ((0.3, 0.35), (30.0, 80.0), 30.0, True),
+        ((0.4, 0.25), (25.0, 40.0), -60.0, True), ((0.38, 0.25), (25.0, 40.0), -60.0, True),
     ],
-)
+)  # fmt: skip
 def test_breadth_is_the_shortest_distance_between_outer_supports(supports, sizes, angle, is_inset):
     found = find_sizes(replace(PIECE, support_breadth=supports[0], support_width=supports[1]))
     assert ((found.breadth, found.width), found.height) == (sizes, 190.0)
@@ -44,7 +38,7 @@ def test_breadth_is_the_shortest_distance_between_outer_supports(supports, sizes
     assert found.breadth <= found.width
 
 
-def test_supports_off_the_middle_are_warned_of():
+def test_supports_off_the_middle_are_warned_of_and_an_oblique_edge_gives_the_direction_of_breadth():
     """The plinth of a wardrobe is set back by 10 cm at its front only: its middle is 20 cm from that edge."""
     front = replace(PIECE, breadth=0.6, support_breadth=0.5, support_reach=0.2, support_angle_deg=30.0)
     found = find_sizes(front)
@@ -59,9 +53,6 @@ def test_supports_off_the_middle_are_warned_of():
         "as with a Breadth of 40 cm"
     )
     assert any("1 piece stands off the middle of its supports" in text for text in building.warnings)
-
-
-def test_an_oblique_edge_of_the_base_gives_the_direction_of_breadth():
     chair = replace(PIECE, breadth=0.7, width=0.7, support_breadth=0.7, support_width=0.7, support_reach=0.265,
                     support_angle_deg=75.0, support_across=0.8)  # fmt: skip
     found = find_sizes(chair)
@@ -70,6 +61,12 @@ def test_an_oblique_edge_of_the_base_gives_the_direction_of_breadth():
     assert row["notes"].endswith(
         " between the outer supports: Breadth is twice the distance from the middle to the nearest edge between them"
     )
+    for piece in (PIECE, replace(PIECE, support_breadth=0.3), replace(PIECE, support_breadth=0.4, support_width=0.25)):
+        reach = min(piece.support_breadth, piece.support_width) / 2
+        angle = 30.0 if piece.support_breadth < piece.support_width else -60.0
+        assert find_sizes(replace(piece, support_reach=reach, support_angle_deg=angle)) == replace(
+            find_sizes(piece), piece=replace(piece, support_reach=reach, support_angle_deg=angle)
+        )
 
 
 def test_pieces_that_cannot_be_taken_are_left_out_with_the_reason():
@@ -85,18 +82,12 @@ def test_pieces_that_cannot_be_taken_are_left_out_with_the_reason():
     assert not found.is_complete
 
 
-# ---------------------------------------------------------------- names
-
-
-def test_an_item_is_named_by_its_room_and_a_number():
+def test_items_rooms_and_types_are_told_apart_by_their_names():
     pieces = tuple(replace(PIECE, key=f"p{n}", x=float(n)) for n in range(3))
     found = list_building(model(pieces=(*pieces, replace(PIECE, key="q", space=""))))
     assert [(row["item"], row.get("room")) for row in found.items] == [
         ("101-01", "101 Office"), ("101-02", "101 Office"), ("101-03", "101 Office"), ("Level 1-01", None),
     ]  # fmt: skip
-
-
-def test_rooms_of_one_name_on_two_floors_are_told_apart():
     upper = Storey("u", "Level 2", 3.0, 3.0)
     above = replace(SPACE, key="r2", storey="u", bottom=3.0, top=6.0)
     pieces = (PIECE, replace(PIECE, key="q", storey="u", space="r2"))
@@ -105,6 +96,10 @@ def test_rooms_of_one_name_on_two_floors_are_told_apart():
     assert [(row["item"], row["room"]) for row in found.items] == [
         ("Level 1-01", "Level 1 101 Office"), ("Level 2-01", "Level 2 101 Office"),
     ]  # fmt: skip
+    found = list_building(model(pieces=(PIECE, replace(PIECE, key="q", height=1.0))))
+    assert [(row["type"], row["height"]) for row in found.types] == [("Shelf", 190.0), ("Shelf (2)", 100.0)]
+    heights = {row["type"]: row["height"] for row in found.types}
+    assert all(heights[row["type"]] == row["height"] for row in found.items)
 
 
 LONG = ((0.0, 0.0), (12.0, 0.0), (12.0, 2.0), (0.0, 2.0))
@@ -116,49 +111,32 @@ ROOMS = "Office", "Eingangshalle", "Lecture hall", "Dining hall", "Town hall off
 STAIRS = "Scala A", "Treppenhaus", "Stair 2", "S-101 STAIR"
 
 
-def test_corridors_have_a_word_for_it_and_are_slender():
+def test_corridors_and_stairs_have_a_word_for_it_and_are_slender_or_hold_an_end_of_a_stair():
     for title in (*CORRIDORS, *ROOMS, "Passages archive"):
         kind = "corridor" if title in CORRIDORS else "room"
         for area in (LONG, ANGLED):
             assert find_kind(replace(SPACE, title=title, area=(area,))) == kind, title
         assert find_kind(replace(SPACE, title=title), doors=2) == "room"
         assert find_kind(replace(SPACE, title=title), doors=3) == kind
-
-
-def test_stairs_have_a_word_for_it_and_hold_an_end_of_a_stair():
     for title in (*STAIRS, "Upstairs office", "Scaleworks", "Office"):
         assert find_kind(replace(SPACE, title=title), holds_stair=True) == ("stair" if title in STAIRS else "room")
         assert find_kind(replace(SPACE, title=title)) == "room"
 
 
-def test_fitted_furniture_is_of_unknown_fixing_and_says_so():
-    found = list_building(model(pieces=(replace(PIECE, is_fitted=True),)))
-    (row,) = found.items
-    assert row["anchored"] == "unknown"
-    assert "fitted furniture, usually fixed: look at it, and fill in Anchored" in row["notes"]
-    assert "anchored" not in list_building(model()).items[0]
-
-
-# ---------------------------------------------------------------- places and plans
-
-
-def test_doors_become_places_and_those_that_lead_out_exits():
-    inner = Door("d1", "s", "", 6.0, 2.0, 0.0, 0.9, 0.2, 0.9)
-    outer = Door("d2", "s", "", 0.0, 2.0, 0.0, 1.0, 0.2, 1.0)
-    other = replace(SPACE, key="r2", name="102", area=(tuple((x + 6.2, y) for x, y in ROOM),))
-    found = list_building(model(spaces=(SPACE, other), doors=(replace(inner, x=6.1), replace(outer, x=-0.1))))
-    rows = {row["place"]: row for row in found.places}
-    assert set(rows) == {"101 Office", "102 Office", "Door 101 / 102", "Exit 101"}
-    assert (rows["Exit 101"]["kind"], rows["Door 101 / 102"]["kind"]) == ("exit", "door")
-    assert "Doors that lead out of the ground storey (a room on one side only): 1 of 2." in found.remarks
-
-
-def test_an_outline_is_read_back_as_the_room_and_simplified_to_what_a_cell_takes():
+def test_an_outline_is_simplified_to_what_a_cell_takes_and_names_of_plans_are_plain_and_each_its_own():
     (row,) = list_building(model()).places
     assert set(parse_outline(row["outline"], 1.0)) == set(ROOM)
     ring = tuple((5 + 4 * math.cos(at / 100), 5 + 4 * math.sin(at / 100)) for at in range(628))
     (row,) = list_building(model(spaces=(replace(SPACE, area=(ring,)),), pieces=())).places
     assert len(parse_outline(row["outline"], 1.0)) <= 200
+    for source, storey, name in (
+        ("duplex.ifc", "Level 1", "duplex-Level-1.svg"), ("a b.ifc", "Erdgeschoß / Süd", "a-b-Erdgescho-Sud.svg"),
+        ("模型.ifc", "一階", "plan.svg"), ("x" * 200, "y", "x" * 60 + ".svg"), ("../../a.ifc", "..", "a.svg"),
+    ):  # fmt: skip
+        assert name_plan(source, storey) == name
+    assert name_plans("a.ifc", ["一层", "二层", "Level-1", "level 1"]) == [
+        "a.svg", "a-2.svg", "a-Level-1.svg", "a-level-1-2.svg"
+    ]  # fmt: skip
 
 
 def test_plans_of_published_models_are_read_as_reports_read_them(published):
@@ -179,41 +157,24 @@ def test_plans_of_published_models_are_read_as_reports_read_them(published):
             assert row["plan_bottom"] < item["y"] < row["plan_bottom"] + box[1]
 
 
-def test_names_of_plans_are_plain_and_each_its_own():
-    for source, storey, name in (
-        ("duplex.ifc", "Level 1", "duplex-Level-1.svg"), ("a b.ifc", "Erdgeschoß / Süd", "a-b-Erdgescho-Sud.svg"),
-        ("模型.ifc", "一階", "plan.svg"), ("x" * 200, "y", "x" * 60 + ".svg"), ("../../a.ifc", "..", "a.svg"),
-    ):  # fmt: skip
-        assert name_plan(source, storey) == name
-    assert name_plans("a.ifc", ["一层", "二层", "Level-1", "level 1"]) == [
-        "a.svg", "a-2.svg", "a-Level-1.svg", "a-level-1-2.svg"
-    ]  # fmt: skip
-
-
-def test_a_type_of_several_sizes_becomes_several_types():
-    found = list_building(model(pieces=(PIECE, replace(PIECE, key="q", height=1.0))))
-    assert [(row["type"], row["height"]) for row in found.types] == [("Shelf", 190.0), ("Shelf (2)", 100.0)]
-    heights = {row["type"]: row["height"] for row in found.types}
-    assert all(heights[row["type"]] == row["height"] for row in found.items)
-
-
-def test_an_edge_as_far_as_half_the_supports_changes_nothing():
-    for piece in (PIECE, replace(PIECE, support_breadth=0.3), replace(PIECE, support_breadth=0.4, support_width=0.25)):
-        reach = min(piece.support_breadth, piece.support_width) / 2
-        angle = 30.0 if piece.support_breadth < piece.support_width else -60.0
-        assert find_sizes(replace(piece, support_reach=reach, support_angle_deg=angle)) == replace(
-            find_sizes(piece), piece=replace(piece, support_reach=reach, support_angle_deg=angle)
-        )
-
-
-def test_the_roof_is_the_highest_storey_or_ceiling():
+def test_roof_and_storeys_fitted_furniture_and_doors_become_rows():
     assert list_building(model()).building["height"] == 3.0
     roof = Storey("t", "Roof", 7.5, 7.5)
     assert list_building(model(storeys=(STOREY, roof))).building["height"] == 7.5
-
-
-def test_a_model_of_walls_alone_keeps_its_storeys():
     upper = Storey("u", "Level 2", 3.0, 3.0)
     found = list_building(model(storeys=(STOREY, upper), spaces=(), pieces=(), walls={"s": ((ROOM,),)}))
     assert [row["floor"] for row in found.floors] == ["Level 1", "Level 2"]
     assert not found.is_complete
+    found = list_building(model(pieces=(replace(PIECE, is_fitted=True),)))
+    (row,) = found.items
+    assert row["anchored"] == "unknown"
+    assert "fitted furniture, usually fixed: look at it, and fill in Anchored" in row["notes"]
+    assert "anchored" not in list_building(model()).items[0]
+    inner = Door("d1", "s", "", 6.0, 2.0, 0.0, 0.9, 0.2, 0.9)
+    outer = Door("d2", "s", "", 0.0, 2.0, 0.0, 1.0, 0.2, 1.0)
+    other = replace(SPACE, key="r2", name="102", area=(tuple((x + 6.2, y) for x, y in ROOM),))
+    found = list_building(model(spaces=(SPACE, other), doors=(replace(inner, x=6.1), replace(outer, x=-0.1))))
+    rows = {row["place"]: row for row in found.places}
+    assert set(rows) == {"101 Office", "102 Office", "Door 101 / 102", "Exit 101"}
+    assert (rows["Exit 101"]["kind"], rows["Door 101 / 102"]["kind"]) == ("exit", "door")
+    assert "Doors that lead out of the ground storey (a room on one side only): 1 of 2." in found.remarks

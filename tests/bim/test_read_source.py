@@ -1,9 +1,7 @@
 """Which reader takes a file is told by its content; what none takes is refused in words, and stays bounded."""
 
-import io
 import subprocess
 import sys
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -12,19 +10,12 @@ from assess.bim.read_source import read_source
 from assess.errors import AssessError, InputError, ModelError
 from tests.bim.cobie_files import write_cobie
 from tests.bim.ifc_files import one_room
+from tests.motion.writers import zipped
 
 MODELS = Path(__file__).parents[2] / "samples" / "models"
 LARGE = (MODELS / "LargeBuilding.ifc").read_bytes()
 NO_ENTITIES = b"ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('IFC4'));\nENDSEC;\nDATA;\n#1=(;\nENDSEC;\nEND-ISO-10303-21;\n"
 SHELF = (0, 0, 0, 0.4, 0.8, 1.9)
-
-
-def zipped(**parts: bytes) -> bytes:
-    data = io.BytesIO()
-    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in parts.items():
-            archive.writestr(name.replace("__", "."), content)
-    return data.getvalue()
 
 
 @pytest.mark.slow
@@ -36,11 +27,24 @@ def test_a_model_is_known_whatever_its_name(tmp_path):
     assert [row["description"] for row in read_source(path, name).items] == ["Shelf"]
 
 
-def test_a_cobie_file_is_known_whatever_its_name(tmp_path):
+def test_a_cobie_file_is_known_whatever_its_name_and_what_nothing_reads_is_refused(tmp_path):
     path = write_cobie(tmp_path / "handover.xlsx").rename(tmp_path / "handover.ifc")
     assert len(read_source(path, "handover.ifc").items) == 2
     with pytest.raises(ModelError, match="holds no positions, so that no routes can be drafted"):
         read_source(path, "handover.ifc", routes="draft")
+    (tmp_path / "a.rvt").write_bytes(b"\xd0\xcf\x11\xe0" + bytes(100))
+    with pytest.raises(ModelError, match=r"a\.rvt is of a kind that is not imported: name an IFC model"):
+        read_source(tmp_path / "a.rvt", "a.rvt")
+    with pytest.raises(InputError, match=r"a\.ifc does not exist. Check the name and the folder"):
+        read_source(tmp_path / "a.ifc", "a.ifc")
+    with pytest.raises(InputError, match=r"a\.ifc is a folder\. Name the file in it"):
+        read_source(tmp_path, "a.ifc")
+    path = tmp_path / "a.ifc"
+    with path.open("wb") as file:
+        file.write(LARGE[:4096])
+        file.truncate(2 * 2**30)
+    with pytest.raises(ModelError, match=r"it has 2,048 MB, more than 512 MB\. Export fewer storeys"):
+        read_source(path, "a.ifc")
 
 
 @pytest.mark.parametrize(
@@ -51,7 +55,7 @@ def test_a_cobie_file_is_known_whatever_its_name(tmp_path):
         (LARGE[: len(LARGE) // 2], "its last line, END-ISO-10303-21;, is missing. Copy or export it again."),
         (LARGE[:-20], "its last line, END-ISO-10303-21;, is missing."),
         (b"<?xml version='1.0'?>\n<ifcXML xmlns='x'/>", "it is an ifcXML file. Export the building as IFC"),
-        (zipped(a__ifc=LARGE), "it is packed as a zip file. Unpack it and import the .ifc file in it."),
+        (zipped({"a.ifc": LARGE}), "it is packed as a zip file. Unpack it and import the .ifc file in it."),
         (b"PK\x03\x04" + bytes(200), "a.ifc is damaged: it cannot be unpacked."),
         (LARGE.replace(b"'IFC2X3'", b"'IFC1X9'", 1), "its schema is IFC1X9, expected one of: IFC2X3, IFC4, IFC4X3."),
         (LARGE.replace(b"LENGTHUNIT", b"AREAUNIT"), "a.ifc has no unit of length"),
@@ -67,27 +71,8 @@ def test_what_is_no_model_is_refused_in_words(tmp_path, data, message):
     assert message in caught.value.message
 
 
-def test_a_kind_that_nothing_reads_a_missing_file_and_a_folder(tmp_path):
-    (tmp_path / "a.rvt").write_bytes(b"\xd0\xcf\x11\xe0" + bytes(100))
-    with pytest.raises(ModelError, match=r"a\.rvt is of a kind that is not imported: name an IFC model"):
-        read_source(tmp_path / "a.rvt", "a.rvt")
-    with pytest.raises(InputError, match=r"a\.ifc does not exist. Check the name and the folder"):
-        read_source(tmp_path / "a.ifc", "a.ifc")
-    with pytest.raises(InputError, match=r"a\.ifc is a folder\. Name the file in it"):
-        read_source(tmp_path, "a.ifc")
-
-
-def test_a_file_of_two_gigabytes_is_refused_without_being_read(tmp_path):
-    path = tmp_path / "a.ifc"
-    with path.open("wb") as file:
-        file.write(LARGE[:4096])
-        file.truncate(2 * 2**30)
-    with pytest.raises(ModelError, match=r"it has 2,048 MB, more than 512 MB\. Export fewer storeys"):
-        read_source(path, "a.ifc")
-
-
 @pytest.mark.slow
-def test_a_million_entities_more_change_nothing(tmp_path):
+def test_a_million_entities_more_change_nothing_and_more_pieces_than_are_read_are_refused(tmp_path):
     at = LARGE.rindex(b"ENDSEC;")
     path = tmp_path / "a.ifc"
     with path.open("wb") as file:
@@ -95,10 +80,6 @@ def test_a_million_entities_more_change_nothing(tmp_path):
         file.writelines(b"#%d=IFCCARTESIANPOINT((%d.,0.,0.));\n" % (10**6 + n, n) for n in range(10**6))
         file.write(LARGE[at:])
     assert len(read_source(path, "a.ifc").items) == 14
-
-
-@pytest.mark.slow
-def test_more_pieces_than_are_read_are_refused(tmp_path):
     at = LARGE.rindex(b"ENDSEC;")
     path = tmp_path / "a.ifc"
     one = b"#%d=IFCFURNISHINGELEMENT('0%021d',$,'x',$,$,$,$,$);\n"

@@ -11,12 +11,12 @@ import shapely
 
 import assess
 from assess.bim import roomplan
-from assess.bim.import_workbook import build_workbook
 from assess.bim.model_rows import list_building
 from assess.bim.plan_shapes import to_polygon
 from assess.bim.read_source import read_source
 from assess.bim.roomplan import EXITS, EXPERIMENTAL, SCANNED_SIZES, UNKNOWN_AXES, read_roomplan
 from assess.errors import ModelError
+from tests.bim.ifc_files import write_import
 from tests.bim.scan_files import element, identify, lie, office, place, wall, write
 
 NAME = "office.json"
@@ -34,9 +34,6 @@ def piece(model, name):
     return pieces_of(model)[identify(name)]
 
 
-# --- pieces ---
-
-
 def test_pieces_have_sizes_positions_and_directions():
     model = read(office())
     assert (model.source, model.schema, model.sizes_from) == (NAME, "RoomPlan", "scan")
@@ -52,16 +49,13 @@ def test_pieces_have_sizes_positions_and_directions():
     assert {one.space for one in model.pieces} == {identify("floor")}
 
 
-def test_texts_for_categories_and_lists_of_columns_mean_the_same():
+def test_texts_for_categories_lists_of_columns_and_a_file_of_ios_16_mean_the_same():
     other = office()
     for kind in ("objects", "walls", "doors", "windows", "floors"):
         for one in other[kind]:
             one["category"], one["confidence"] = next(iter(one["category"])), "high"
             one["transform"] = [one["transform"][at : at + 4] for at in range(0, 16, 4)]
     assert read(other) == read(office())
-
-
-def test_a_file_of_ios_16_has_neither_floors_nor_storeys():
     old = office()
     del old["floors"], old["sections"], old["story"]
     for kind in ("objects", "walls", "doors", "windows"):
@@ -92,7 +86,7 @@ def test_a_scan_that_began_askew_is_turned_along_its_walls():
         assert walls.bounds == pytest.approx((-2.55, -2.05, 2.55, 2.05), abs=2e-3)
 
 
-def test_what_is_no_piece_is_listed_with_its_reason():
+def test_what_is_no_piece_is_listed_with_its_reason_and_a_free_standing_oven_taken():
     scan = office()
     cabinet = scan["objects"][1]["identifier"]
     scan["objects"] += [
@@ -114,9 +108,6 @@ def test_what_is_no_piece_is_listed_with_its_reason():
         ("Storage", hanging, 1, True), ("Television", hanging, 1, True),
     }  # fmt: skip
     assert [(one.storey, one.end) for one in model.stairs] == [("0", "foot")]
-
-
-def test_a_free_standing_oven_and_an_unknown_category_are_taken():
     scan = office()
     scan["objects"] += [element("oven", "oven", (0.6, 0.9, 0.6), place(-2, 0.45, 1)),
                         element("washerDryer", "washer", (0.6, 0.85, 0.6), place(-2, 0.43, 0)),
@@ -127,7 +118,7 @@ def test_a_free_standing_oven_and_an_unknown_category_are_taken():
     }  # fmt: skip
 
 
-def test_remarks_and_warnings_say_what_a_scan_does_not_know():
+def test_remarks_say_what_a_scan_does_not_know_and_rooms_have_outlines_and_the_names_of_all_their_uses():
     assert read(office()).warnings == (EXPERIMENTAL, SCANNED_SIZES, UNKNOWN_AXES, EXITS)
     assert EXITS not in read(office(doors=[])).warnings
     assert read(office()).remarks == ()
@@ -140,12 +131,6 @@ def test_remarks_and_warnings_say_what_a_scan_does_not_know():
         model = read(bare)
         assert (len(model.pieces), len(model.spaces)) == (0, 1)
         assert [str(one) for one in model.remarks] == ["The scan holds no objects: fill in Items by hand."]
-
-
-# --- rooms, walls, doors ---
-
-
-def test_rooms_have_outlines_and_the_names_of_all_their_uses():
     labels = [{"label": {"kitchen": {}}, "center": [-1, 0, 0]}, {"label": "diningRoom", "center": [1, 0, 0]},
               {"label": "unidentified", "center": [1, 0, 1]}]  # fmt: skip
     assert [one.name for one in read(office(sections=labels)).spaces] == ["Kitchen / Dining room"]
@@ -157,16 +142,13 @@ def test_rooms_have_outlines_and_the_names_of_all_their_uses():
         assert to_polygon(room.area).bounds == pytest.approx((-2.5, -2, 2.5, 2))
 
 
-def test_walls_that_close_no_room_make_none():
+def test_walls_that_close_no_room_their_gaps_at_doors_and_windows_and_low_openings_as_doors():
     scan = office(floors=[])
     assert len(read(scan).spaces) == 1
     del scan["walls"][0]
     model = read(scan)
     assert not model.spaces
     assert {one.space for one in model.pieces} == {""}
-
-
-def test_walls_have_gaps_at_doors_and_windows():
     model = read(office())
     walls = shapely.union_all([to_polygon(one) for one in model.walls["0"]])
     assert not walls.intersects(shapely.Point(-1.5, -2)), "the door"
@@ -179,9 +161,6 @@ def test_walls_have_gaps_at_doors_and_windows():
     curved = read(scan)
     assert curved.walls == model.walls
     assert [str(one) for one in curved.remarks] == ["1 curved wall is not drawn."]
-
-
-def test_doors_and_low_openings_are_doors():
     scan = office()
     scan["openings"] = [element("opening", "way", (1.2, 2.1, 0), place(2.5, 1.05, -1, 90)),
                         element("opening", "hatch", (0.8, 0.8, 0), place(2.5, 1.4, 1, 90))]  # fmt: skip
@@ -190,9 +169,6 @@ def test_doors_and_low_openings_are_doors():
     assert math.cos(math.radians(2 * door.normal_deg)) == pytest.approx(-1), "along Y"
     assert (way.key, way.x, way.y, way.width, way.overall) == (identify("way"), 2.5, 1, 1.2, 0)
     assert math.cos(math.radians(2 * way.normal_deg)) == pytest.approx(1), "along X"
-
-
-# --- several rooms and storeys ---
 
 
 def structure():
@@ -217,7 +193,7 @@ def structure():
     return merged
 
 
-def test_a_structure_has_storeys_and_named_rooms():
+def test_a_structure_has_storeys_and_named_rooms_and_rooms_not_merged_are_taken_with_a_warning():
     model = read(structure())
     assert [(one.key, one.name, one.elevation) for one in model.storeys] == [
         ("0", "Storey 0", 0), ("1", "Storey 1", pytest.approx(2.8)),
@@ -229,9 +205,6 @@ def test_a_structure_has_storeys_and_named_rooms():
     assert [rooms[one.space] for one in model.pieces if one.type == "Table"] == ["Living room", "Kitchen", "Bedroom"]
     assert [one.bottom for one in model.pieces] == pytest.approx([0] * len(model.pieces), abs=1e-9)
     assert [(one.storey, one.end) for one in model.stairs] == [("0", "foot"), ("1", "head")]
-
-
-def test_rooms_that_were_not_merged_are_taken_with_a_warning():
     both = [office(), office(identifier=identify("b"))]
     for one in both[1]["objects"]:
         one["identifier"] += " b"
@@ -242,31 +215,19 @@ def test_rooms_that_were_not_merged_are_taken_with_a_warning():
     assert not any("one by one" in str(one) for one in read(structure()).warnings)
 
 
-# --- as a workbook ---
-
-
-def test_a_scan_becomes_a_workbook_that_is_read(tmp_path):
+def test_a_scan_becomes_a_workbook_that_is_read_and_the_reader_of_files_knows_it(tmp_path):
     found = list_building(read(structure()))
     assert {row["sizes_from"] for row in found.items} == {"scan"}
     assert [row["floor"] for row in found.floors] == ["Storey 0", "Storey 1"]
     assert set(found.files) == {row["plan"] for row in found.floors}
     assert "height" not in found.building, "a ceiling is no roof"
-    (tmp_path / "w.xlsx").write_bytes(build_workbook(found))
-    for name, data in found.files.items():
-        (tmp_path / name).write_bytes(data)
-    inventory = assess.read_inventory(tmp_path / "w.xlsx", building={"ground_pga": 0.3})
+    inventory = assess.read_inventory(write_import(found, tmp_path), building={"ground_pga": 0.3})
     assert [one.is_scanned for one in inventory.items] == [True] * len(found.items)
     assert {one.room for one in inventory.items} <= {one.place for one in inventory.places}
     assert all(floor.plan for floor in inventory.floors)
-
-
-def test_the_reader_of_files_knows_it(tmp_path):
     path = tmp_path / "scan.json"
     path.write_bytes(b"\xef\xbb\xbf" + json.dumps(office(), indent=1).encode())
     assert len(read_source(path, "scan.json").items) == 4
-
-
-# ---------------------------------------------------------------- files that are no scan, damaged ones and hostile ones
 
 
 def refused(data: bytes) -> str:
@@ -340,7 +301,7 @@ def test_a_fault_names_its_place(change, said):
     assert found.endswith("Export the scan again.")
 
 
-def test_faults_of_surfaces_and_of_rooms_name_theirs():
+def test_faults_of_surfaces_and_of_rooms_name_their_place_and_odd_words_and_numbers_do_no_harm():
     assert "walls[2].transform:" in broken(lambda one: one.update(transform=[]), "walls", 2)
     assert "doors[0].dimensions:" in broken(lambda one: one.update(dimensions=[1, -2, 0]), "doors", 0)
     assert "sections[0].center:" in broken(lambda one: one.update(center=[1]), "sections", 0)
@@ -349,10 +310,7 @@ def test_faults_of_surfaces_and_of_rooms_name_theirs():
     assert "rooms[1].objects[0].dimensions:" in refused(write({"rooms": [office(objects=[]), room]}))
     assert "objects: expected a list." in refused(write(office(objects={"a": 1})))
     assert "objects[1]: expected an object in braces." in refused(write(office(objects=[office()["objects"][0], 3])))
-
-
-def test_odd_words_and_numbers_do_no_harm():
-    """A category, a label or a story of any kind is taken as text without control characters, or not at all."""
+    # A category, a label or a story of any kind is taken as text without control characters, or not at all.
     scan = office(sections=[{"label": "\u202ekit\x00chen", "center": None}])
     scan["objects"][0] |= {"category": "\ud800=cmd()", "confidence": 3, "story": "two", "parentIdentifier": 5}
     scan["objects"][1] |= {"category": {}, "story": 10**30}
@@ -365,21 +323,15 @@ def test_odd_words_and_numbers_do_no_harm():
     assert len(read_roomplan(write(office(floors=[floor])), "s.json").spaces) == 1, "an outline that crosses itself"
 
 
-def test_a_million_objects_are_refused_before_they_are_read():
+def test_a_million_objects_deep_nesting_and_a_large_file_are_refused(monkeypatch):
     walls = [wall(f"w{at}", 0, at, 5) for at in range(roomplan.MOST_SURFACES + 1)]
     assert "holds more than 500 walls" in refused(write(office(walls=walls)))
     many = b'{"objects": [' + b",".join([b'{"a": [0, 0, 0]}'] * 1_000_000) + b"]}"
     assert "holds more than 4,000,000 values" in refused(many)
     few = b'{"objects": [' + b",".join([b"{}"] * 500_000) + b"]}"
     assert "holds more than 5,000 objects, the most that is read of a scan. Scan fewer rooms at a time." in refused(few)
-
-
-def test_a_large_file_is_refused_unless_its_bulk_is_one_text(monkeypatch):
+    deep = json.dumps(office()).removesuffix("}") + ', "coreModel": ' + "[" * 200_000 + "]" * 200_000 + "}"
+    assert "cannot be read as JSON" in refused(deep.encode())
     monkeypatch.setattr(roomplan, "MOST_BYTES", 100_000)
     read_roomplan(write(office(coreModel="A" * 60_000)), "s.json")
     assert "larger than 0 MB" in refused(write(office(coreModel="A" * 100_000)))
-
-
-def test_deep_nesting_of_what_is_not_read_is_refused():
-    deep = json.dumps(office()).removesuffix("}") + ', "coreModel": ' + "[" * 200_000 + "]" * 200_000 + "}"
-    assert "cannot be read as JSON" in refused(deep.encode())

@@ -1,9 +1,7 @@
 """Homes of Sweet Home 3D: a file that the program itself wrote, and damaged ones made of it."""
 
-import io
 import re
 import struct
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -12,12 +10,14 @@ import shapely.affinity
 
 import assess
 from assess.bim import sweet_home
-from assess.bim.import_workbook import build_workbook
 from assess.bim.model_rows import list_building
 from assess.bim.plan_shapes import to_polygon
 from assess.bim.read_source import read_source
 from assess.bim.sweet_home import DRAWN_SIZES, read_sweet_home
 from assess.errors import ModelError
+from tests.bim.ifc_files import write_import
+from tests.motion.writers import zipped
+from tests.workbooks import parts_of
 
 FILE = Path(__file__).parents[1] / "data" / "scans" / "two-floors.sh3d"
 CORNERS = {
@@ -85,7 +85,7 @@ def test_what_is_no_piece_is_listed_with_its_reason(home):
     }  # fmt: skip
 
 
-def test_levels_rooms_and_stairs(home):
+def test_levels_rooms_stairs_doors_windows_and_north(home):
     assert [one.name for one in home.storeys] == ["Ground floor", "Upper floor"]
     assert [one.elevation for one in home.storeys] == pytest.approx([0, 2.62])
     ground, upper = (one.key for one in home.storeys)
@@ -97,9 +97,6 @@ def test_levels_rooms_and_stairs(home):
         (ground, "foot", 8, -1.5), (upper, "head", 8, -1.5),
     ]  # fmt: skip
     assert {one.name: one.storey for one in home.pieces}["Wardrobe"] == upper
-
-
-def test_doors_and_windows(home):
     for one in home.doors:
         plan = lay(one.x, one.y, one.thickness, one.width, one.normal_deg)
         assert share_alike(plan, to_plan(DOOR_CORNERS[one.name])) > 0.999
@@ -113,10 +110,7 @@ def test_doors_and_windows(home):
     for x, y in ((7, -5), (5, -2.5), (2, 0)):
         assert not walls.intersects(shapely.Point(x, y)), "a gap"
     assert walls.covers(shapely.Point(5, -4))
-
-
-def test_north_is_that_of_the_compass(home):
-    """30 degrees clockwise from up the plan: X, to the right, points 60 degrees clockwise from north."""
+    # 30 degrees clockwise from up the plan: X, to the right, points 60 degrees clockwise from north.
     assert home.azimuth_deg == 60
     assert read(change(b"northDirection='0.5235988'", b"northDirection='0.0'")).azimuth_deg is None
 
@@ -127,16 +121,10 @@ def test_a_home_becomes_a_workbook_that_is_read(tmp_path):
     assert {row["sizes_from"] for row in found.items} == {"model"}
     assert found.building == {"azimuth_deg": 60}
     assert found.routes
-    (tmp_path / "w.xlsx").write_bytes(build_workbook(found))
-    for name, data in found.files.items():
-        (tmp_path / name).write_bytes(data)
     with pytest.raises(assess.WorkbookError) as raised:
-        assess.read_inventory(tmp_path / "w.xlsx")
+        assess.read_inventory(write_import(found, tmp_path))
     errors = [one for one in raised.value.problems if one.severity == "error"]
     assert {one.sheet for one in errors} == {"Floors"}, "shaking alone is missing"
-
-
-# --- other files, made of this one ---
 
 
 def read(data):
@@ -144,15 +132,11 @@ def read(data):
 
 
 def home_xml():
-    with zipfile.ZipFile(FILE) as archive:
-        return archive.read("Home.xml")
+    return parts_of(FILE)["Home.xml"]
 
 
 def pack(xml, part="Home.xml"):
-    made = io.BytesIO()
-    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr(part, xml)
-    return made.getvalue()
+    return zipped({part: xml})
 
 
 def change(old, new, count=1):
@@ -167,30 +151,21 @@ def refused(data):
     return str(raised.value)
 
 
-def test_a_home_without_levels():
+def test_homes_without_levels_with_a_hidden_group_with_a_round_wall_and_with_nothing():
     xml = re.sub(rb"<level [^>]*/>", b"", home_xml())
     xml = re.sub(rb" level='[^']*'", b"", xml)
     model = read(pack(xml))
     assert [(one.key, one.level) for one in model.storeys] == [("", 0)]
     assert len(model.pieces) == 10
     assert len(list_building(model).items) == 10
-
-
-def test_a_hidden_group_hides_its_pieces():
     model = read(change(b"name='Kitchen' x=", b"name='Kitchen' visible='false' x="))
     assert "Fridge & Freezer" not in {one.name for one in model.pieces}
     hidden = {
         one.type.removeprefix("Sweet Home 3D ") for one in model.skipped if str(one.reason) == "hidden in the plan"
     }
     assert hidden == {"Chair", "Kitchen cabinet", "Kitchen upper cabinet", "Fridge & Freezer"}
-
-
-def test_a_round_wall_is_not_drawn():
     (remark,) = read(change(b"<wall id=", b"<wall arcExtent='1.5' id=")).remarks
     assert str(remark) == "1 round wall is not drawn."
-
-
-def test_an_empty_home_is_a_model_of_nothing():
     model = read(pack(b"<home version='7000'/>"))
     assert (model.pieces, model.spaces, len(model.storeys)) == ((), (), 1)
 
@@ -220,26 +195,20 @@ def test_what_cannot_be_read_is_refused(data, said):
     assert said in refused(data)
 
 
-def test_what_unpacks_to_too_much_is_refused(monkeypatch):
-    monkeypatch.setattr(sweet_home, "MOST_HOME", 20_000)
-    assert "is too large: at most" in refused(pack(home_xml() + b" " * 10_000_000))
-    monkeypatch.setattr(sweet_home, "MOST_BYTES", 5_000)
-    assert "is too large: at most" in refused(FILE.read_bytes())
-
-
-def test_too_many_elements_or_too_deep_is_refused():
+def test_too_many_elements_too_deep_in_code_or_too_much_is_refused(monkeypatch):
     assert "holds more than 100,000 elements" in refused(pack(b"<home>" + b"<property/>" * 100_001 + b"</home>"))
     assert "too many inside each other" in refused(pack(b"<home>" + b"<a>" * 200 + b"</a>" * 200 + b"</home>"))
     wall = b"<wall xStart='0' yStart='0' xEnd='9' yEnd='9' thickness='1'/>"
     assert "holds more than 1,000 pieces, walls, rooms or levels" in refused(pack(b"<home>" + wall * 1001 + b"</home>"))
-
-
-def test_a_part_in_code_is_refused():
-    """The mark of encryption in both headers of the part."""
+    # The mark of encryption in both headers of the part.
     data = bytearray(pack(b"<home/>"))
     for at in (6, data.index(b"PK\x01\x02") + 8):
         struct.pack_into("<H", data, at, 1)
     assert "h.sh3d is damaged" in refused(bytes(data))
+    monkeypatch.setattr(sweet_home, "MOST_HOME", 20_000)
+    assert "is too large: at most" in refused(pack(home_xml() + b" " * 10_000_000))
+    monkeypatch.setattr(sweet_home, "MOST_BYTES", 5_000)
+    assert "is too large: at most" in refused(FILE.read_bytes())
 
 
 HUTCH = b"""<furnitureGroup name='Dresser with hutch' x='300' y='900' width='110' depth='60' height='200'>

@@ -4,7 +4,6 @@ import io
 from pathlib import Path
 from typing import Any
 
-import formualizer
 import openpyxl
 import pytest
 import xlsxwriter
@@ -32,7 +31,7 @@ from tests.bim.update_books import (
     typed,
     update,
 )
-from tests.recalculate import stored_cells
+from tests.recalculate import evaluate, stored_cells
 from tests.workbook.books import write_book
 from tests.workbooks import address
 
@@ -43,11 +42,10 @@ def grown(*new: dict[str, Any], **more: Any) -> ImportedBuilding:
     return building(items=[*ITEMS, *(new or (NEW,))], **more)
 
 
-# ---------------------------------------------------------------- where they go
-
-
 @pytest.mark.slow
-def test_a_new_piece_goes_into_the_next_prepared_row_and_more_below(book: bytes) -> None:
+def test_a_new_piece_goes_into_the_next_row_under_a_name_of_its_own(
+    book: bytes,
+) -> None:
     found = update(book, grown())
     assert texts(found) == ["Items A8 B201-07 was added"]
     one = inventory(found.data).items[-1]
@@ -58,10 +56,6 @@ def test_a_new_piece_goes_into_the_next_prepared_row_and_more_below(book: bytes)
     found = update(book, grown(*new))
     assert kinds(found) == ["added"] * 20
     assert len(inventory(found.data).items) == 26
-
-
-@pytest.mark.slow
-def test_a_new_piece_gets_a_name_that_no_row_has_and_goes_below_rows_of_people(book: bytes) -> None:
     data = typed(book, row=3, item="b201-07")
     found = update(data, grown(NEW, {**NEW, "source_id": "other"}))
     assert texts(found) == ["Items A8 B201-07 (2) was added", "Items A9 B201-07 (3) was added"]
@@ -81,19 +75,12 @@ def test_live_formulas_stay_and_work_in_new_rows(book: bytes, tmp_path: Path) ->
     assert formulas == {
         cell.coordinate: cell.value for line in new.iter_rows() for cell in line if cell.data_type == "f"
     }
-    evaluated = formualizer.load_workbook(str(path))
-    evaluated.evaluate_all()
-    stored, ratio = stored_cells(path), address("B/H", 8)
+    evaluated, stored, ratio = evaluate(path), stored_cells(path), address("B/H", 8)
     assert stored["Items", ratio] == pytest.approx(44.5 / 200)
     for label in ("B/H", "PFA used [g]", "OR", "Class (formula)", "Can rock"):
-        at = address(label, 8)
-        cell = new[at]
+        cell, expected = new[address(label, 8)], stored["Items", address(label, 8)]
         result = evaluated.get_value("Items", cell.row, cell.column)
-        expected = stored["Items", at]
         assert result == (expected if isinstance(expected, str) else pytest.approx(expected)), label
-
-
-# ---------------------------------------------------------------- where they cannot go
 
 
 @pytest.mark.slow
@@ -117,10 +104,24 @@ def test_below_something_else_nothing_is_added_and_all_is_listed(book: bytes) ->
     assert "row 10" in str(found.problems[0])
 
 
-def test_under_merged_cells_nothing_is_added(book: bytes) -> None:
+def test_under_merged_cells_nothing_is_added_and_elsewhere_new_types_places_and_pieces(book: bytes) -> None:
     found = update(resaved(book, lambda one: one["Items"].merge_cells("A8:C9")), grown())
     assert kinds(found) == ["left_out"]
     assert "merged cells or a formula of several cells stand below row 7" in str(found.problems[0])
+    kind = {**TYPES[0], "type": "Safe made to measure", "width": 60.0}
+    place = {"place": "B202 Store", "floor": "Level 2", "x": 9.0, "y": 2.0, "kind": "room"}
+    new = {**NEW, "type": "Safe made to measure", "room": "B202 Store"}
+    found = update(book, grown(new, types=[*TYPES, kind], places=[*PLACES, place]))
+    assert kinds(found) == ["added"] * 3
+    read = inventory(found.data)
+    assert faults(found.data) == []
+    assert {one.type for one in read.catalogue} >= {"Safe made to measure"}
+    assert len(table(found.data, "Catalogue").rows) == len(table(book, "Catalogue").rows) + 1
+    model = grown(NEW, {**NEW, "item": "Other"})
+    found = update_workbook(book, model, "house.xlsx")
+    assert kinds(found) == ["added", "added"]
+    again = update_workbook(found.data, model, "house.xlsx")
+    assert (kinds(again), again.data) == (["kept"], found.data)
 
 
 @pytest.mark.slow
@@ -135,9 +136,6 @@ def test_what_another_program_saved_with_formulas_in_a_column_of_its_own_is_upda
     assert update(resaved(book)).changes == ()
     found = update(resaved(book, prepare), building(items=[*changed(p3={"breadth": 60.0}).items, NEW]))
     assert texts(found)[1:] == ["Items A8 B201-07 was added"]
-
-
-# ---------------------------------------------------------------- other units, languages and programs
 
 
 @pytest.mark.parametrize("language", ["en", "it"])
@@ -250,23 +248,3 @@ def test_headings_blank_rows_and_typed_units(tmp_path: Path) -> None:
         "Items A13 B201-07 was added",
     ]
     assert [one.item for one in inventory(found.data).items] == [*(f"W-{at}" for at in range(6)), "B201-07"]
-
-
-def test_new_types_places_and_pieces_make_a_sound_workbook(book: bytes) -> None:
-    kind = {**TYPES[0], "type": "Safe made to measure", "width": 60.0}
-    place = {"place": "B202 Store", "floor": "Level 2", "x": 9.0, "y": 2.0, "kind": "room"}
-    new = {**NEW, "type": "Safe made to measure", "room": "B202 Store"}
-    found = update(book, grown(new, types=[*TYPES, kind], places=[*PLACES, place]))
-    assert kinds(found) == ["added"] * 3
-    read = inventory(found.data)
-    assert faults(found.data) == []
-    assert {one.type for one in read.catalogue} >= {"Safe made to measure"}
-    assert len(table(found.data, "Catalogue").rows) == len(table(book, "Catalogue").rows) + 1
-
-
-def test_pieces_of_one_new_source_id_are_all_added(book: bytes) -> None:
-    model = grown(NEW, {**NEW, "item": "Other"})
-    found = update_workbook(book, model, "house.xlsx")
-    assert kinds(found) == ["added", "added"]
-    again = update_workbook(found.data, model, "house.xlsx")
-    assert (kinds(again), again.data) == (["kept"], found.data)

@@ -43,9 +43,6 @@ def test_which_floor_of_the_workbook_is_that_of_the_model(case: str) -> None:
     assert match_floors(model, own, pairs) == same
 
 
-# ---------------------------------------------------------------- the origin
-
-
 def shift(model: ImportedBuilding, x: float, y: float) -> ImportedBuilding:
     """The model as an import sees it that takes more, or less, off all positions."""
 
@@ -74,7 +71,7 @@ def test_another_origin_of_the_model_is_no_change(book: bytes, by: tuple[float, 
 
 
 @pytest.mark.slow
-def test_new_rows_and_moved_pieces_get_the_origin_of_the_workbook(book: bytes) -> None:
+def test_new_rows_get_the_origin_of_the_workbook_and_half_of_the_pieces_or_no_whole_step_are_moved(book: bytes) -> None:
     place = {"place": "B202", "floor": "Level 2", "x": 9.0, "y": 2.0, "kind": "room", "outline": "6 0; 12.5 0; 12.5 4"}
     items = [{**ITEMS[0], "x": 7.0}, *ITEMS[1:], piece(7, "Level 3", "C301")]
     floor = {"floor": "Level 3", "elevation": 6.2, "plan": "house-Level-3.svg", "plan_left": -0.5, "plan_bottom": -0.5}
@@ -83,10 +80,6 @@ def test_new_rows_and_moved_pieces_get_the_origin_of_the_workbook(book: bytes) -
     assert texts(found) == texts(same)
     assert len(found.changes) == 4
     assert found.data == same.data
-
-
-@pytest.mark.slow
-def test_a_building_that_moved_by_no_whole_step_and_half_of_its_pieces_are_moved(book: bytes) -> None:
     found = update(book, shift(building(), 103.0, 0.0))
     assert found.moved == (0.0, 0.0)
     assert row(found.data).get("x") == 104

@@ -42,18 +42,13 @@ def named(found: Updated) -> list[str]:
     return [row.get("plan") for row in table(found.data, "Floors").rows]
 
 
-def test_plans_that_are_not_there_or_of_the_import_before_are_written_and_none_else(
-    tmp_path: Path, book: bytes
-) -> None:
+def test_plans_of_an_import_are_written_and_those_of_people_stay(tmp_path: Path, book: bytes) -> None:
     found = update(tmp_path, book, model())
     assert found.plans == {name: NEW[name] for name in list(NEW)[:2]}
     assert not found.is_changed
     put(tmp_path, Level_1=OLD["house-Level-1.svg"], Level_2=NEW["house-Level-2.svg"])
     found = update(tmp_path, book, model())
     assert (found.plans, found.changes) == ({"house-Level-1.svg": NEW["house-Level-1.svg"]}, ())
-
-
-def test_a_plan_of_people_under_the_name_of_an_import_stays_and_is_listed(tmp_path: Path, book: bytes) -> None:
     put(tmp_path, Level_1=b"<svg>survey</svg>", Level_2=OLD["house-Level-2.svg"])
     floors = [{**one, "plan_left": -1.5} for one in FLOORS]
     found = update(tmp_path, book, model(floors=floors))

@@ -1,7 +1,5 @@
 """A building model imported again: what it tells is updated, what people typed stays, and everything is listed."""
 
-import io
-import zipfile
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -42,7 +40,7 @@ from tests.bim.update_books import (
 )
 from tests.workbook import books
 from tests.workbook.books import change_parts, write_book
-from tests.workbooks import address, edited
+from tests.workbooks import address, edited, parts_of
 
 TYPED = {
     "axis": "X", "anchored": "yes", "friction": 0.4, "route": "R1", "segment": "a", "edge_distance": 0.2,
@@ -123,7 +121,7 @@ def test_a_field_follows_the_model_or_stays_and_both_are_listed(
     assert found.is_changed == any("->" in one for one in done)
 
 
-def test_what_people_typed_stays(book: bytes) -> None:
+def test_what_people_typed_and_what_the_model_lost_stays_and_is_listed(book: bytes, tmp_path: Path) -> None:
     data = typed(book, **TYPED)
     every: dict[str, Any] = {"breadth": 61.0, "width": 81.0, "height": 210.0, "x": 7.0, "y": 7.0, "angle_deg": 10.0}
     every |= {"room": "A102 Office"}
@@ -133,6 +131,21 @@ def test_what_people_typed_stays(book: bytes) -> None:
         del before[name], after[name]
     assert after == before
     assert len(found.changes) == len(every)
+    bare = [{name: value for name, value in one.items() if name in ("item", "floor", "source_id")} for one in ITEMS]
+    own = {"item": "Own 1", "floor": "Level 1", "breadth": 40, "height": 180, "x": 1, "y": 1}
+    assert update(typed(book, row=8, **own), building(items=bare, building={})).changes == ()
+    found = update(book, without(building(), 2))
+    assert texts(found) == ["Items A3 A101-02 is missing in the model; its row stays"]
+    assert found.data is book
+    assert not found.is_changed
+    path = tmp_path / "house.xlsx"
+    path.write_bytes(typed(book, row=4, breadth=50))
+    cell = address("breadth", 4)
+    old, new = f'<c r="{cell}"><v>50</v>', f'<c r="{cell}"><f>2*25</f><v>50</v>'
+    change_parts(path, {"xl/worksheets/sheet4.xml": books.replace(old, new)})
+    assert texts(update(path.read_bytes())) == [
+        f"Items {cell} Breadth [cm] of A102-03 stays 50; the model has 54.5: the cell holds a formula"
+    ]
 
 
 def test_every_other_byte_of_the_file_stays(book: bytes, tmp_path: Path) -> None:
@@ -143,7 +156,7 @@ def test_every_other_byte_of_the_file_stays(book: bytes, tmp_path: Path) -> None
     change_parts(path, {"xl/unknown.bin": bytes(range(256)), "[Content_Types].xml": books.replace("</Types>", kind)})
     data = path.read_bytes()
     found = update(data, changed(p3={"breadth": 60.0}, p4={"x": 9.0}))
-    before, after = parts(data), parts(found.data)
+    before, after = parts_of(data), parts_of(found.data)
     different = {name for name in before if before[name] != after.get(name)}
     assert before.keys() == after.keys()
     assert different <= {"xl/worksheets/sheet4.xml", "xl/worksheets/sheet9.xml", "xl/workbook.xml"}  # Items, Lists
@@ -155,26 +168,8 @@ def test_every_other_byte_of_the_file_stays(book: bytes, tmp_path: Path) -> None
     assert unlike == [4]
 
 
-def parts(data: bytes) -> dict[str, bytes]:
-    with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        return {name: archive.read(name) for name in archive.namelist()}
-
-
-def test_nothing_in_the_model_clears_nothing_and_rows_without_a_source_id_are_peoples_own(book: bytes) -> None:
-    bare = [{name: value for name, value in one.items() if name in ("item", "floor", "source_id")} for one in ITEMS]
-    own = {"item": "Own 1", "floor": "Level 1", "breadth": 40, "height": 180, "x": 1, "y": 1}
-    assert update(typed(book, row=8, **own), building(items=bare, building={})).changes == ()
-
-
-def test_a_piece_that_the_model_lost_stays_and_is_listed(book: bytes) -> None:
-    found = update(book, without(building(), 2))
-    assert texts(found) == ["Items A3 A101-02 is missing in the model; its row stays"]
-    assert found.data is book
-    assert not found.is_changed
-
-
 @pytest.mark.slow
-def test_a_source_id_that_is_there_twice_is_listed_and_one_of_other_letter_case_is_another(book: bytes) -> None:
+def test_a_source_id_that_is_there_twice_is_listed_and_a_model_of_one_storey_touches_that_alone(book: bytes) -> None:
     data = typed(book, row=8, item="Copy", floor="Level 1", breadth=54.5, height=200, source_id=f" {IDS[2]} ")
     letters = table(data).letters["source_id"]
     assert texts(update(data, changed(p3={"breadth": 60.0}))) == [
@@ -184,17 +179,9 @@ def test_a_source_id_that_is_there_twice_is_listed_and_one_of_other_letter_case_
     assert texts(found) == ["Items A4 A102-03 stays as it is: the model has 2 pieces of its Source ID"]
     found = update(book, changed(p3={"source_id": IDS[2].lower(), "breadth": 60.0}))
     assert kinds(found) == ["added", "missing"]
-
-
-def test_a_formula_of_people_stays_and_is_listed(book: bytes, tmp_path: Path) -> None:
-    path = tmp_path / "house.xlsx"
-    path.write_bytes(typed(book, row=4, breadth=50))
-    cell = address("breadth", 4)
-    old, new = f'<c r="{cell}"><v>50</v>', f'<c r="{cell}"><f>2*25</f><v>50</v>'
-    change_parts(path, {"xl/worksheets/sheet4.xml": books.replace(old, new)})
-    assert texts(update(path.read_bytes())) == [
-        f"Items {cell} Breadth [cm] of A102-03 stays 50; the model has 54.5: the cell holds a formula"
-    ]
+    model: ImportedBuilding = replace(without(changed(p5={"breadth": 60.0}), 1, 2, 3, 4), floors=FLOORS[1:])
+    found = update(book, replace(model, places=PLACES[3:]))
+    assert kinds(found) == ["changed", *["missing"] * 4]
 
 
 @pytest.fixture(scope="module")
@@ -226,7 +213,7 @@ def test_whatever_changes_the_reader_sees_the_model_and_what_people_typed(
 # ---------------------------------------------------------------- what cannot be updated
 
 
-def test_a_workbook_or_model_that_does_not_fit_is_refused(book: bytes) -> None:
+def test_what_cannot_be_updated_is_refused_and_an_update_can_be_cancelled(book: bytes, tmp_path: Path) -> None:
     other = [{**one, "source_id": f"other {at}"} for at, one in enumerate(ITEMS)]
     for data, model, message in (
         (book, building(items=other, source="tower.ifc"),
@@ -236,9 +223,6 @@ def test_a_workbook_or_model_that_does_not_fit_is_refused(book: bytes) -> None:
     ):  # fmt: skip
         with pytest.raises(InputError, match=message):
             update_workbook(data, model, "house.xlsx")
-
-
-def test_what_is_no_workbook_of_an_import_is_refused(book: bytes, tmp_path: Path) -> None:
     handover = cobie_files.write_cobie(tmp_path / "handover.xlsx").read_bytes()
     bare = write_book(tmp_path / "book.xlsx", {"Floors": [["Floor"], ["1"]], "Things": [["a"]]}).read_bytes()
     stray = edited(book, {"Items": {"A200001": "stray"}})
@@ -249,9 +233,6 @@ def test_what_is_no_workbook_of_an_import_is_refused(book: bytes, tmp_path: Path
     ):  # fmt: skip
         with pytest.raises(WorkbookError, match=message):
             update_workbook(data, building(), "house.xlsx")
-
-
-def test_a_signed_workbook_and_a_cell_of_an_array_formula_are_refused(book: bytes, tmp_path: Path) -> None:
     path = tmp_path / "house.xlsx"
     path.write_bytes(book)
     change_parts(path, {"_xmlsignatures/sig1.xml": b"<Signature/>"})
@@ -264,9 +245,6 @@ def test_a_signed_workbook_and_a_cell_of_an_array_formula_are_refused(book: byte
     change_parts(path, {"xl/worksheets/sheet4.xml": books.replace(f'<c r="{cell}"><v>', f'<c r="{cell}">{formula}<v>')})
     with pytest.raises(WorkbookError, match=f"Items!{cell}: it belongs to an array formula"):
         update_workbook(path.read_bytes(), building(), "house.xlsx")
-
-
-def test_it_can_be_cancelled(book: bytes) -> None:
     cancel = Event()
     cancel.set()
     with pytest.raises(CancelledError):
@@ -294,7 +272,6 @@ def test_only_blank_lines_of_the_building_are_filled(book: bytes) -> None:
 
 
 def renamed(data: bytes, names: dict[str, str]) -> bytes:
-    """Rename floors, rooms, places and types wherever they stand."""
     changes: dict[str, dict[str, Any]] = {}
     for sheet in ("Floors", "Items", "Places", "Routes", "Catalogue"):
         found = table(data, sheet)
@@ -349,16 +326,13 @@ def test_floors_that_were_renumbered_are_not_mixed_up() -> None:
     assert kinds(update(data, anew)) == ["kept", "kept"], "names that the model gives anew"
 
 
-def test_a_new_floor_is_added_with_its_pieces(book: bytes) -> None:
+def test_floors_are_added_their_plans_replaced_and_elevations_that_people_corrected_stay(book: bytes) -> None:
     floor = {"floor": "Level 3", "elevation": 6.2, "plan": "house-Level-3.svg", "plan_left": 0.0}
     found = update(book, building(floors=[*FLOORS, floor], items=[*ITEMS, piece(7, "Level 3", "C301")]))
     assert texts(found) == ["Floors A4 Level 3 was added", "Items A8 C301-07 was added"]
     added = row(found.data, 3, "Floors")
     assert (added.get("elevation"), added.get("plan"), added.get("plan_left")) == (6.2, "house-Level-3.svg", 0.0)
     assert faults(found.data) == []
-
-
-def test_an_elevation_that_people_corrected_stays(book: bytes) -> None:
     data = typed(typed(book, "Floors", 2, elevation=0.45), "Floors", 3, elevation=None)
     found = update(data)
     cell = address("elevation", 2, "Floors")
@@ -366,19 +340,13 @@ def test_an_elevation_that_people_corrected_stays(book: bytes) -> None:
         f"Floors {cell} Elevation [m] of Level 1 stays 0.45; the model has 0",
         f"Floors {cell[0]}3 Elevation [m] of Level 2: blank -> 3.1",
     ]
-
-
-def test_a_plan_of_a_model_of_another_file_name_is_replaced(book: bytes) -> None:
-    """The types tell which files the workbook was imported from."""
+    # The types tell which files the workbook was imported from.
     floors = [{**one, "plan": one["plan"].replace("house", "house-v2")} for one in FLOORS]
     model = building(source="house_v2.ifc", floors=floors, files={one["plan"]: b"<svg/>" for one in floors})
     found = update(book, model)
     assert [(one.was, one.now) for one in found.changes] == [
         ("house-Level-1.svg", "house-v2-Level-1.svg"), ("house-Level-2.svg", "house-v2-Level-2.svg"),
     ]  # fmt: skip
-
-
-def test_where_floors_cannot_be_added_nothing_is_written(book: bytes) -> None:
     data = typed(book, "Floors", 6, name="Levels as of the survey in May")
     model = building(floors=[*FLOORS, {"floor": "Level 3", "elevation": 6.2}])
     with pytest.raises(WorkbookError, match="Floors!A6: 1 new row of the model was not added: row 6, the last"):
@@ -388,13 +356,10 @@ def test_where_floors_cannot_be_added_nothing_is_written(book: bytes) -> None:
 # ---------------------------------------------------------------- rooms and types
 
 
-def test_a_piece_that_the_model_moved_to_a_room_of_its_own_follows(book: bytes) -> None:
+def test_rooms_and_types_follow_the_model_and_those_that_people_chose_stay(book: bytes) -> None:
     """The only piece of a room: that it stood in another room of the model is no name that people gave."""
     found = update(book, changed(p5={"room": "B202 Store"}, p6={"room": "A102 Office"}))
     assert [one.now for one in found.changes] == ["B202 Store", "A102 Office"]
-
-
-def test_a_type_of_the_catalogue_that_people_chose_stays_for_all_pieces(book: bytes) -> None:
     data = book
     for number in (2, 4, 6):
         data = typed(data, row=number, type="Bookcase tall")
@@ -405,17 +370,11 @@ def test_a_type_of_the_catalogue_that_people_chose_stays_for_all_pieces(book: by
         "Items A8 B201-07 was added",
     ]
     assert inventory(found.data).items[-1].type == "Bookcase tall"
-
-
-def test_a_type_that_the_model_replaced_is_added_and_listed(book: bytes) -> None:
     new = {**TYPES[0], "type": "Wardrobe 90", "width": 90.0}
     pieces = {f"p{number}": {"type": "Wardrobe 90", "width": 90.0} for number in (1, 3, 5)}
     found = update(book, building(items=changed(**pieces).items, types=[new, TYPES[1]]))
     assert kinds(found) == ["changed", "kept"] * 3 + ["added"]
     assert inventory(found.data).items[0].width == pytest.approx(0.9)
-
-
-def test_sizes_of_a_type_follow_and_its_weight_and_types_of_the_program_stay(book: bytes) -> None:
     data = typed(book, "Catalogue", 2, weight=95)
     own = {"type": "Bookcase tall", "breadth": 77.0, "height": 222.0}
     found = update(data, building(types=[{**TYPES[0], "width": 82.0, "weight": 50.0}, TYPES[1], own]))
@@ -427,7 +386,7 @@ def test_sizes_of_a_type_follow_and_its_weight_and_types_of_the_program_stay(boo
 
 
 @pytest.mark.slow
-def test_types_told_apart_by_a_number_are_found_by_their_sizes() -> None:
+def test_types_told_apart_by_a_number_are_found_by_their_sizes_and_routes_are_peoples_own() -> None:
     """The numbers follow the order of the pieces: "Desk" of today may be "Desk (2)" of the workbook."""
     small, large = ({"type": "Desk", "breadth": 60.0, "width": width, "height": 75.0} for width in (120.0, 160.0))
     first = building(types=[small, {**large, "type": "Desk (2)"}])
@@ -437,32 +396,7 @@ def test_types_told_apart_by_a_number_are_found_by_their_sizes() -> None:
     third = {**small, "width": 140.0}
     found = update(data, building(types=[third, {**small, "type": "Desk (2)"}, {**large, "type": "Desk (3)"}]))
     assert texts(found) == [f"Catalogue A{table(data, 'Catalogue').rows[-1].number + 1} Desk (3) was added"]
-
-
-# ---------------------------------------------------------------- places and routes
-
-
-def test_places_follow_and_their_kind_stays(book: bytes) -> None:
-    data = typed(book, "Places", 2, kind="corridor")
-    data = typed(data, "Places", 6, place="Assembly point", floor="Level 1", x=-9, y=0, kind="exit")
-    outline = "0 0; 7 0; 7 4; 0 4"
-    found = update(data, building(places=[{**PLACES[0], "x": 3.5, "outline": outline}, *PLACES[2:]]))
-    assert [(one.label, one.was, one.now) for one in found.changes] == [
-        ("X [m]", 3, 3.5), ("Outline [m]", PLACES[0]["outline"], outline),
-    ]  # fmt: skip
-    assert row(found.data, sheet="Places").get("kind") == "corridor"
-
-
-def test_a_place_that_people_put_on_another_floor_is_listed(book: bytes) -> None:
-    data = typed(book, "Places", 6, place="Exit B", floor="Level 2", x=50, y=50)
-    new = {"place": "exit b", "floor": "Level 1", "x": 20.0, "y": 2.0, "kind": "exit"}
-    found = update_workbook(data, building(places=[*PLACES, new]), "house.xlsx")
-    assert texts(found) == ["Places B6 Floor of Exit B stays 'Level 2'; the model has 'Level 1'"]
-
-
-@pytest.mark.slow
-def test_routes_are_peoples_own_and_points_of_another_draft_move_none_of_theirs() -> None:
-    """Drafts number their points: "L1 point 1" of the model may be another one than that of a reviewed route."""
+    # Drafts number their points: "L1 point 1" of the model may be another one than that of a reviewed route.
     point = {"place": "L1 point 1", "floor": "Level 1", "x": 5.0, "y": 2.0}
     segment = {"route": "R", "segment": "a", "floor": "Level 1", "start": "L1 point 1", "end": "Exit A101"}
     data = write_first(building(places=[*PLACES, point], routes=[segment]))
@@ -471,14 +405,22 @@ def test_routes_are_peoples_own_and_points_of_another_draft_move_none_of_theirs(
     assert update(data, building(places=[*PLACES, *others], routes=other)).changes == ()
 
 
-def test_without_a_sheet_of_places_these_are_left_out(book: bytes) -> None:
+# ---------------------------------------------------------------- places and routes
+
+
+def test_places_follow_their_kind_and_floor_stay_and_without_a_sheet_they_are_left_out(book: bytes) -> None:
+    data = typed(book, "Places", 2, kind="corridor")
+    data = typed(data, "Places", 6, place="Assembly point", floor="Level 1", x=-9, y=0, kind="exit")
+    outline = "0 0; 7 0; 7 4; 0 4"
+    found = update(data, building(places=[{**PLACES[0], "x": 3.5, "outline": outline}, *PLACES[2:]]))
+    assert [(one.label, one.was, one.now) for one in found.changes] == [
+        ("X [m]", 3, 3.5), ("Outline [m]", PLACES[0]["outline"], outline),
+    ]  # fmt: skip
+    assert row(found.data, sheet="Places").get("kind") == "corridor"
+    data = typed(book, "Places", 6, place="Exit B", floor="Level 2", x=50, y=50)
+    new = {"place": "exit b", "floor": "Level 1", "x": 20.0, "y": 2.0, "kind": "exit"}
+    found = update_workbook(data, building(places=[*PLACES, new]), "house.xlsx")
+    assert texts(found) == ["Places B6 Floor of Exit B stays 'Level 2'; the model has 'Level 1'"]
     found = update(resaved(book, lambda one: one.remove(one["Places"])))
     assert texts(found)[0] == "Places A101 Hall of the model was left out: the workbook lacks the sheet"
     assert kinds(found) == ["left_out"] * len(PLACES)
-
-
-@pytest.mark.slow
-def test_a_model_of_one_storey_alone_touches_that_storey_alone(book: bytes) -> None:
-    model: ImportedBuilding = replace(without(changed(p5={"breadth": 60.0}), 1, 2, 3, 4), floors=FLOORS[1:])
-    found = update(book, replace(model, places=PLACES[3:]))
-    assert kinds(found) == ["changed", *["missing"] * 4]

@@ -44,7 +44,6 @@ PLACES: Rows = [
 
 
 def piece(number: int, floor: str, room: str, kind: int = 0, **more: Any) -> dict[str, Any]:
-    """A piece of the model."""
     sizes = {name: TYPES[kind][name] for name in ("breadth", "width", "height")}
     return {
         "item": f"{room[:4]}-{number:02}", "floor": floor, "room": room, "description": TYPES[kind]["type"],
@@ -54,19 +53,14 @@ def piece(number: int, floor: str, room: str, kind: int = 0, **more: Any) -> dic
 
 
 ITEMS: Rows = [
-    piece(1, "Level 1", "A101 Hall"),
-    piece(2, "Level 1", "A101 Hall", 1),
-    piece(3, "Level 1", "A102 Office"),
-    piece(4, "Level 1", "A102 Office", 1),
-    piece(5, "Level 2", "B201 Office"),
-    piece(6, "Level 2", "B201 Office", 1),
-]
+    piece(1, "Level 1", "A101 Hall"), piece(2, "Level 1", "A101 Hall", 1), piece(3, "Level 1", "A102 Office"),
+    piece(4, "Level 1", "A102 Office", 1), piece(5, "Level 2", "B201 Office"), piece(6, "Level 2", "B201 Office", 1),
+]  # fmt: skip
 PLANS = {str(row["plan"]): b"<svg/>" for row in FLOORS}
 IDS = [one["source_id"] for one in ITEMS]
 
 
 def building(**more: Any) -> ImportedBuilding:
-    """The model as it was imported first."""
     rows = {"floors": FLOORS, "items": ITEMS, "places": PLACES, "types": TYPES}
     known = {"building": "House", "latitude": 45.5, "longitude": 9.2, "azimuth_deg": 30.0}
     return ImportedBuilding(**{"source": "house.ifc", "building": known, **rows, "files": PLANS, **more})
@@ -84,7 +78,6 @@ def typed(data: bytes, sheet: str = "Items", row: int = 2, **fields: Value) -> b
 
 
 def line(data: bytes, **fields: Value) -> bytes:
-    """Type values into lines of Building."""
     values = {}
     for name, value in fields.items():
         at = next(at for at, one in enumerate(SHEETS[0].columns, 1) if one.name == name)
@@ -134,7 +127,6 @@ def update(data: bytes, imported: ImportedBuilding | None = None) -> Updated:
 
 
 def first_book(**more: Any) -> bytes:
-    """The workbook of the first import."""
     return write_first(building(**more))
 
 
@@ -147,7 +139,6 @@ def write_first(imported: ImportedBuilding) -> bytes:
 
 
 def table(data: bytes, sheet: str = "Items") -> Table:
-    """A sheet as it is read."""
     return read_tables(data, "house.xlsx")[0][sheet]
 
 
@@ -167,12 +158,10 @@ def faults(data: bytes) -> list[str]:
 
 
 def texts(found: Updated) -> list[str]:
-    """What was done, in words."""
     return [str(describe(one)) for one in found.changes]
 
 
 def kinds(found: Updated) -> list[str]:
-    """The kinds of what was done."""
     return [one.kind for one in found.changes]
 
 

@@ -7,7 +7,7 @@ from assess.compare.comparison_files import write_comparison
 from assess.compare.past_run import read_run
 from assess.settings import Settings
 from tests.compare.past import write_routed_run
-from tests.report.test_phone import DESK, OVER_THE_EDGE, PHONE, _examine, pytestmark
+from tests.report.test_phone import DESK, OVER_THE_EDGE, PHONE, examine, pytestmark
 from tests.workbooks import UNVERIFIED
 
 __all__ = ["pytestmark"]
@@ -26,7 +26,7 @@ def test_axe_finds_nothing_in_a_comparison(browser, page_path, width):
     page = browser.new_page(viewport={"width": width, "height": 844})
     page.goto(page_path.as_uri())
     assert page.locator(".conditions").inner_text() == "BEFORE: motion × 0.05"
-    assert _examine(page) == []
+    assert examine(page) == []
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     page.evaluate("document.querySelector('.scroll').classList.add('scroller')")
     assert page.evaluate(OVER_THE_EDGE, width) == []

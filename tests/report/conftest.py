@@ -42,3 +42,10 @@ def samples_now(make_once, verified_example):
             return samples.write_samples(folder)
 
     return make_once("samples-now", write)
+
+
+@pytest.fixture(scope="session")
+def small():
+    from tests.report.made_fragilities import assess_small
+
+    return assess_small()

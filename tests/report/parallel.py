@@ -10,14 +10,15 @@ import re
 from pathlib import Path
 from typing import Any
 
-import formualizer
 import numpy as np
 import openpyxl
 import openpyxl.utils
+from openpyxl.utils.cell import coordinate_to_tuple
 
 from assess.report.xlsx.items_sheet import item_columns
 from assess.results import Results
 from assess.settings import Settings
+from tests.recalculate import evaluate
 from tests.workbooks import assessed
 
 FLOORS: list[dict[str, Any]] = [
@@ -80,20 +81,15 @@ def assess_rich(folder: Path, settings: Settings) -> Results:
     return assessed(folder / "w.xlsx", list_items(), FLOORS, settings=settings, restitution=0.9)
 
 
-# ---------------------------------------------------------------- what the files show
-
-
 Cells = dict[tuple[str, str], Any]
 
 
 def read_json(path: Path) -> dict[str, Any]:
-    """Return results.json."""
     found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     return found
 
 
 def read_csv(path: Path) -> list[dict[str, str]]:
-    """Return the rows of items.csv."""
     with path.open(encoding="utf-8-sig", newline="") as file:
         return list(csv.DictReader(file))
 
@@ -127,19 +123,13 @@ def _plain(text: str) -> str:
     return " ".join(html.unescape(re.sub(r"<[^>]+>", " ", text)).split())
 
 
-# ---------------------------------------------------------------- edits
-
-
 Edit = tuple[str, str, Any]
 """Sheet, cell, value."""
 
 
 def recalculate(path: Path, edits: list[Edit]) -> Cells:
     """Return every cell of a workbook after edits, as formualizer computes it."""
-    book = formualizer.load_workbook(str(path))
-    for sheet, cell, value in edits:
-        book.set_value(sheet, *_place(cell), value)
-    book.evaluate_all()
+    book = evaluate(path, ((sheet, *coordinate_to_tuple(cell), value) for sheet, cell, value in edits))
     cells = [(sheet.title, cell) for sheet in openpyxl.load_workbook(path) for row in sheet.iter_rows() for cell in row]
     found = {(title, cell.coordinate): book.get_value(title, cell.row, cell.column) for title, cell in cells
              if cell.value is not None}  # fmt: skip
@@ -153,8 +143,3 @@ def write_edited(path: Path, edits: list[Edit], out: Path) -> Path:
         changed[sheet][cell] = value
     changed.save(out)
     return out
-
-
-def _place(cell: str) -> tuple[int, int]:
-    column, row = openpyxl.utils.cell.coordinate_from_string(cell)
-    return row, openpyxl.utils.column_index_from_string(column)

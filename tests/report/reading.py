@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import pypdfium2
 import pytest
 
 import assess
@@ -17,6 +18,8 @@ from assess.report.content import Content
 from assess.report.data import write_json
 from assess.report.figures import math_figures, motion_figures, risk_map
 from assess.report.figures.math_figures import MathFigure
+from assess.report.figures.plan import Plan, build_plan
+from assess.report.figures.ways import build_stretches
 from assess.report.fonts import print_fonts
 from assess.report.pages import html as pages
 from assess.report.pages.pdf import finish_pdf, start_pdf
@@ -48,7 +51,6 @@ def changed(one: ItemResult, **values: Any) -> ItemResult:
 
 
 def write_html(results: Results, folder: Path, *, figures: bool = False) -> str:
-    """Write the HTML report and return it."""
     with nullcontext() if figures else no_figures():
         return assess.write_reports(results, folder, ("html",))["html"].read_text(encoding="utf-8")
 
@@ -75,6 +77,17 @@ def write_pdf(
 def lay_out(page: str) -> list[Any]:
     """Return the boxes of the pages of a report that was rendered for print."""
     return [one._page_box for one in open_page(page, print_fonts()).render().pages]
+
+
+def read_pages(path: Path) -> list[str]:
+    """Return the texts of the pages of a PDF, with single spaces."""
+    return [" ".join(page.get_textpage().get_text_range().split()) for page in pypdfium2.PdfDocument(path)]
+
+
+def plans_of(results: Results) -> list[Plan | None]:
+    """Return the plan of each floor as the report draws it; None where it has none."""
+    ways = build_stretches(results.route_tables)
+    return [build_plan(page, results, ways.get(page.floor.floor, ())) for page in Content(results).floors]
 
 
 def read_text(page: str) -> str:

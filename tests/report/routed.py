@@ -83,8 +83,7 @@ def write_routed(path: Path, **sheets: Any) -> Path:
     """Write the building; `sheets` take the place of its own by their names."""
     rows = {"Building": [BUILDING], "Floors": FLOORS, "Items": ITEMS, "Places": PLACES,
             "Routes": ROUTES}  # fmt: skip
-    write_sheets(path, rows | sheets)
-    return path
+    return write_sheets(path, rows | sheets)
 
 
 def assess_routed(path: Path, settings: assess.Settings = UNVERIFIED, **sheets: Any) -> Results:

@@ -3,7 +3,6 @@
 import re
 import shutil
 
-import pypdfium2
 import pytest
 
 import assess
@@ -13,7 +12,7 @@ from assess.report.say.piece import list_apart, list_risky
 from assess.results import BASES
 from assess.risk import RiskClass
 from assess.settings import Settings
-from tests.report.reading import render
+from tests.report.reading import read_pages, render
 from tests.shaking import RECORDS as SHAKING, write_record
 from tests.workbooks import RECORDS, write
 
@@ -49,23 +48,12 @@ def mixed(tmp_path_factory):
     return _assess(tmp_path_factory.mktemp("mixed"))
 
 
-@pytest.fixture(scope="module")
-def page(mixed):
-    return render(mixed)
-
-
-# ---------------------------------------------------------------- counts and lists
-
-
-def test_the_workbook_has_pieces_of_every_basis(mixed):
+def test_counts_lists_and_the_table_of_all_pieces_never_mix_bases(mixed):
     assert {one.item.item: one.adopted.basis for one in mixed} == EXPECTED
     assert set(EXPECTED.values()) == set(BASES)
     assert {one.item.item: one.apart for one in mixed} == {
         name: "" if basis in ("simulated", "cannot rock") else basis for name, basis in EXPECTED.items()
     }
-
-
-def test_classes_count_simulated_pieces_alone(mixed):
     rows = list(mixed)
     counts = count("all", rows)
     assert (counts.free, counts.unconfirmed, counts.by_formula, counts.anchored, counts.total) == (2, 4, 1, 1, 8)
@@ -74,9 +62,6 @@ def test_classes_count_simulated_pieces_alone(mixed):
     assert mixed["wide"].adopted.risk >= RiskClass.HIGH, "which the counts leave out"
     assert counts.risky == 1
     assert count("simulated", [mixed["felled"]]).falls == counts.falls.partition(" and")[0]
-
-
-def test_lists_never_rank_what_stands_apart_among_simulated_pieces(mixed):
     content = Content(mixed)
     assert [one.item.item for one in list_apart(mixed, "")] == ["felled", "still"]
     assert [one.item.item for one in list_risky(mixed)] == ["felled"]
@@ -85,13 +70,8 @@ def test_lists_never_rank_what_stands_apart_among_simulated_pieces(mixed):
     assert [one.apart for one, _share in fixes] == sorted((one.apart for one, _share in fixes), key=bool)
     assert [one.item.item for one, share in fixes if share is None] == ["wide", "broad", "calm"]
     assert [share for one, share in fixes if not one.apart][-1] == pytest.approx(1.0)
-
-
-# ---------------------------------------------------------------- pages
-
-
-def test_a_class_of_the_table_of_all_pieces_never_mixes_bases(mixed, page):
-    """Rows that filters take for a class are simulated; all others stand in parts of their own, which say why."""
+    # Rows that filters take for a class are simulated; all others stand in parts of their own, which say why.
+    page = render(mixed)
     table = page[page.index('id="pieces"') :].partition("</table>")[0]
     bodies = re.findall(r"<tbody>(.*?)</tbody>", table, re.DOTALL)
     found = [re.findall(r'id="row-(\d+)".*?data-class="([^"]+)"', body) for body in bodies]
@@ -106,23 +86,14 @@ def test_a_class_of_the_table_of_all_pieces_never_mixes_bases(mixed, page):
     }  # fmt: skip
 
 
-# ---------------------------------------------------------------- what was assumed
-
-
 CONDITIONS = ("Assumed: exactly this motion, and every piece exactly as given", "Every floor's motion times 1.2")
 
 
-@pytest.fixture(scope="module")
-def exactly(tmp_path_factory):
-    return _assess(tmp_path_factory.mktemp("ideal"), ideal=True, scale=1.2)
-
-
 @pytest.mark.slow
-def test_other_conditions_are_named_on_every_page_of_the_pdf(exactly, mixed, tmp_path):
-    written = assess.write_reports(exactly, tmp_path, ("pdf",))
-    document = pypdfium2.PdfDocument(written["pdf"])
-    pages = [" ".join(document[at].get_textpage().get_text_range().split()) for at in range(len(document))]
-    document.close()
+def test_other_conditions_are_named_on_every_page_of_the_pdf(mixed, tmp_path):
+    exactly = _assess(tmp_path, ideal=True, scale=1.2)
+    written = assess.write_reports(exactly, tmp_path / "out", ("pdf",))
+    pages = read_pages(written["pdf"])
     assert len(pages) > 5
     assert all(condition in text for text in pages for condition in CONDITIONS)
     for edition in ("client", "annex"):

@@ -8,25 +8,25 @@ from docs.results_schema import build_schema
 from tests.workbooks import ITEMS, assessed
 
 
-@pytest.fixture
-def results(tmp_path):
+@pytest.mark.slow
+def test_results_follow_their_schema_which_refuses_an_unknown_field_and_a_probability_above_one(tmp_path):
     run = assessed(tmp_path / "w.xlsx", period=0.9, building="Hall", scenario="A test")
     write_json(run, tmp_path / "results.json")
-    return run, json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
-
-
-@pytest.mark.slow
-def test_results_follow_their_schema(results):
+    text = (tmp_path / "results.json").read_text(encoding="utf-8")
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
-    jsonschema.validate(results[1], schema)
+    jsonschema.validate(json.loads(text), schema)
+    wrong = json.loads(text)
+    wrong["items"][0]["adopted"]["probability"] = 1.2
+    with pytest.raises(jsonschema.ValidationError, match=r"1\.2"):
+        jsonschema.validate(wrong, schema)
+    wrong = json.loads(text) | {"more": 1}
+    with pytest.raises(jsonschema.ValidationError, match="more"):
+        jsonschema.validate(wrong, schema)
 
 
-def test_the_schema_is_that_of_the_fields_and_rows():
+def test_the_schema_is_that_of_the_fields_and_rows_and_knows_their_limits():
     assert json.loads(SCHEMA.read_text(encoding="utf-8")) == build_schema(), "run: make docs"
-
-
-def test_the_schema_describes_fields_of_rows_and_knows_their_limits():
     definitions = build_schema()["$defs"]
     chance, segment = definitions["chance"]["properties"], definitions["segment"]["properties"]
     assert chance["probability"] == {"type": "number", "minimum": 0, "maximum": 1,
@@ -43,34 +43,16 @@ def test_the_schema_describes_fields_of_rows_and_knows_their_limits():
     }  # fmt: skip
 
 
-@pytest.mark.slow
-def test_schema_refuses_an_unknown_field_and_a_probability_above_one(results):
-    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
-    wrong = json.loads(json.dumps(results[1]))
-    wrong["items"][0]["adopted"]["probability"] = 1.2
-    with pytest.raises(jsonschema.ValidationError, match=r"1\.2"):
-        jsonschema.validate(wrong, schema)
-    wrong = json.loads(json.dumps(results[1])) | {"more": 1}
-    with pytest.raises(jsonschema.ValidationError, match="more"):
-        jsonschema.validate(wrong, schema)
-
-
-def test_by_the_formula_of_the_paper_the_larger_pfa_governs(tmp_path):
+def test_the_larger_pfa_governs_by_the_paper_sizes_carry_no_binary_noise_and_every_pfv_is_a_number(tmp_path):
     run = assessed(tmp_path / "w.xlsx", class_by="proposed OR")
     write_json(run, tmp_path / "r.json")
     first = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))["items"][0]
     assert (first["axis"], first["pfa_g"], first["pfv_cm_s"]) == ("X", 0.3, 30.0)
     assert first["adopted"]["probability"] == first["methods"]["proposed_or"]["value"]
-
-
-def test_converted_sizes_carry_no_binary_noise(tmp_path):
     sizes = [29, 32.1, 47.2, 57, 58, 113.3]
     items = [{"item": str(at), "floor": "1", "breadth": size, "height": 206.4} for at, size in enumerate(sizes)]
     run = assessed(tmp_path / "w.xlsx", items)
     assert [one.item.breadth_cm for one in run] == sizes
-
-
-def test_a_pfv_that_is_not_given_is_a_number(tmp_path):
     run = assessed(tmp_path / "w.xlsx", ITEMS, [{"floor": "1", "pfa_x": 0.3}, {"floor": "2", "pfa_y": 0.3}])
     write_json(run, tmp_path / "r.json")
     found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"), parse_constant=pytest.fail)

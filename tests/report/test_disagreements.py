@@ -14,12 +14,9 @@ from tests.methods.test_fitted import PROBIT, SURFACE
 from tests.workbooks import UNVERIFIED, assessed
 
 NEVER = dataclasses.replace(
-    SURFACE,
-    key="fitted_never",
-    title="Never",
-    formula=Polynomial("x", ((0, 0, 0.0),)),
+    SURFACE, key="fitted_never", title="Never", formula=Polynomial("x", ((0, 0, 0.0),)),
     fitted=dataclasses.replace(SURFACE.fitted, error=0.5),
-)
+)  # fmt: skip
 ALWAYS = dataclasses.replace(SURFACE, key="fitted_always", title="Always", formula=Polynomial("x", ((0, 0, 1.0),)))
 
 
@@ -103,9 +100,6 @@ class TestKnownRows:
         assert reasons.startswith("PFA 0.165 g is 0.66 times g·B/H, above which rocking can start;")
         assert f"it still gives {100 * row.highest.value:.1f} %." in reasons
         assert "(F_f 1.13 Hz, above F_b 0.83 Hz): PFV is 22.7 cm/s, its median for such pieces 59.0 cm/s." in reasons
-
-
-# ---------------------------------------------------------------- fitted models
 
 
 MODELS = (NEVER, PROBIT, ALWAYS)

@@ -25,14 +25,6 @@ EVERY = {
 }  # fmt: skip
 
 
-def _read(path):
-    document = pypdfium2.PdfDocument(path)
-    pages = [" ".join(page.get_textpage().get_text_range().split()) for page in document]
-    toc = [(mark.level, mark.get_title(), mark.get_dest().get_index()) for mark in document.get_toc()]
-    document.close()
-    return pages, toc
-
-
 def _fill(path):
     """Return for each page the lowest ink as a share of the height between its margins."""
     shares = []
@@ -72,26 +64,21 @@ def _keys(edition):
     return {part.key for part in list_all_parts() if edition in part.places}
 
 
-# ---------------------------------------------------------------- the worked example
-
-
 @pytest.mark.long
 def test_the_worked_example_has_its_pages_and_none_is_half_empty(verified_example, samples_now):
-    pages, toc = _read(samples_now["pdf"])
+    document = pypdfium2.PdfDocument(samples_now["pdf"])
+    pages = [" ".join(page.get_textpage().get_text_range().split()) for page in document]
+    toc = [(mark.get_title(), mark.get_dest().get_index()) for mark in document.get_toc() if mark.level == 0]
+    document.close()
     plans = [
         page for page in Content(verified_example).shown_floors if any(one.item.x_m is not None for one in page.results)
     ]
     assert len(pages) <= MOST_PAGES + len(plans) == 16
-    assert _count_pages(toc, len(pages))["Evacuation routes"] == 1
+    ends = [page for _title, page in toc[1:]] + [len(pages)]
+    lengths = {title: max(1, end - page) for (title, page), end in zip(toc, ends, strict=True)}
+    assert lengths["Evacuation routes"] == 1, "pages on which it begins and goes on"
     assert [at for at, share in enumerate(_fill(samples_now["pdf"])[:-1], 1) if share < 0.5] == []
     assert sum(share < 0.5 for share in _fill(samples_now["annex"])[:-1]) <= 1, "where its pages turn"
     text = " ".join(pages)
     assert "0.135 g on floor G, recorded motion; 0.139 g of the workbook is used for the code's force" in pages[0]
     assert UNCITABLE.findall(text) == []
-
-
-def _count_pages(toc, count):
-    """Return on how many pages each part begins and goes on."""
-    parts = [(title, page) for level, title, page in toc if level == 0]
-    ends = [page for _title, page in parts[1:]] + [count]
-    return {title: max(1, end - page) for (title, page), end in zip(parts, ends, strict=True)}

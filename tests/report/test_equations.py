@@ -27,30 +27,20 @@ LINES = [text for method in all_methods() for text in method.equations] + [one.e
 @pytest.mark.parametrize(
     ("plain", "tex"),
     [
-        ("B/H", r"\dfrac{B}{H}"),
-        ("b/(B/H)", r"\dfrac{b}{B/H}"),
-        ("d/(B/H)²", r"\dfrac{d}{\left(B/H\right)^{2}}"),
-        ("f·PFA/(B/H)", r"\dfrac{f\cdot \mathrm{PFA}}{B/H}"),
-        ("a/2/3", r"\dfrac{a}{2 \cdot 3}"),
-        ("a/b·c", r"\dfrac{a}{b}\cdot c"),
-        ("(1/2 + x)/(a + b)", r"\dfrac{1/2 + x}{a + b}"),
+        ("B/H", r"\dfrac{B}{H}"), ("b/(B/H)", r"\dfrac{b}{B/H}"), ("d/(B/H)²", r"\dfrac{d}{\left(B/H\right)^{2}}"),
+        ("f·PFA/(B/H)", r"\dfrac{f\cdot \mathrm{PFA}}{B/H}"), ("a/2/3", r"\dfrac{a}{2 \cdot 3}"),
+        ("a/b·c", r"\dfrac{a}{b}\cdot c"), ("(1/2 + x)/(a + b)", r"\dfrac{1/2 + x}{a + b}"),
         ("(a + b)·(c + d)/e", r"\dfrac{\left(a + b\right)\cdot \left(c + d\right)}{e}"),
-        ("ln(a/b)/c", r"\dfrac{\ln\left(a/b\right)}{c}"),
-        ("Φ((x - y)/z)", r"\Phi\left(\dfrac{x - y}{z}\right)"),
+        ("ln(a/b)/c", r"\dfrac{\ln\left(a/b\right)}{c}"), ("Φ((x - y)/z)", r"\Phi\left(\dfrac{x - y}{z}\right)"),
         ("√(3g/4r)", r"\sqrt{\dfrac{3 g}{4 r}}"),
         ("15.6/√H (1 + B/H)^-1.5", r"\dfrac{15.6}{\sqrt{H}}\, \left(1 + B/H\right)^{-1.5}"),
-        ("(1 + x)^(-1,5)", r"\left(1 + x\right)^{- 1{,}5}"),
-        ("sin²α", r"\sin^{2}\, \alpha"),
-        ("θ″ = -p²", r"\theta\mathrm{′′} = - p^{2}"),
-        ("|a_g|/g ≤ H_f", r"\dfrac{|a_{g}|}{g} \leq H_{f}"),
-        ("PFV50 = V_imp", r"\mathrm{PFV}_{50} = V_{\mathrm{imp}}"),
-        ("B/H* = -2d", r"(B/H)^{\ast} = - 2 d"),
-        ("a₁ (z/h)¹⁰", r"a_{1}\, \left(z/h\right)^{10}"),
-        ("p = 2.5 rad/s", r"p = 2.5\;\mathrm{rad/s}"),
-        ("g = 9.8 m/s²", r"g = 9.8\;\mathrm{m/s^2}"),
-        ("ε_k = N(0; 1)", r"\varepsilon_{k} = N\left(0,\, 1\right)"),
+        ("(1 + x)^(-1,5)", r"\left(1 + x\right)^{- 1{,}5}"), ("sin²α", r"\sin^{2}\, \alpha"),
+        ("θ″ = -p²", r"\theta\mathrm{′′} = - p^{2}"), ("|a_g|/g ≤ H_f", r"\dfrac{|a_{g}|}{g} \leq H_{f}"),
+        ("PFV50 = V_imp", r"\mathrm{PFV}_{50} = V_{\mathrm{imp}}"), ("B/H* = -2d", r"(B/H)^{\ast} = - 2 d"),
+        ("a₁ (z/h)¹⁰", r"a_{1}\, \left(z/h\right)^{10}"), ("p = 2.5 rad/s", r"p = 2.5\;\mathrm{rad/s}"),
+        ("g = 9.8 m/s²", r"g = 9.8\;\mathrm{m/s^2}"), ("ε_k = N(0; 1)", r"\varepsilon_{k} = N\left(0,\, 1\right)"),
     ],
-)
+)  # fmt: skip
 def test_tex(plain, tex):
     assert write_tex(plain) == tex
 
@@ -91,9 +81,6 @@ def _symbols(text):
         "NFKC", text.replace("½", "12").replace("−", "-").replace("″", "''").replace("′", "'")
     )
     return sorted(one for one in plain if one.isalnum() or one in "=<>≤≥±√'*+-")
-
-
-# ---------------------------------------------------------------- on a page
 
 
 def test_an_equation_is_a_picture_with_the_plain_text_as_its_alternative():

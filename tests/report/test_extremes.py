@@ -23,7 +23,6 @@ CASES = {
 
 
 def _read(*paths):
-    """The texts of the pages of PDFs."""
     return [page.get_textpage().get_text_range() for path in paths for page in pypdfium2.PdfDocument(path)]
 
 

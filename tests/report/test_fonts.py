@@ -23,7 +23,7 @@ def no_cache():
     figure_families.cache_clear()
 
 
-def test_the_files_are_those_of_the_publisher():
+def test_the_files_are_those_of_the_publisher_and_signs_that_one_lacks_are_in_the_other():
     """The OFL reserves the name: a font that is changed may not bear it."""
     files = {
         "IBMPlexSans-Regular.woff2": "ba711a3085ff9f27440b6b9c4550cfc47c97bf36591d5da958b975bb3add8c1a",
@@ -31,9 +31,6 @@ def test_the_files_are_those_of_the_publisher():
     }
     for name, digest in files.items():
         assert hashlib.sha256((FOLDER / name).read_bytes()).hexdigest() == digest
-
-
-def test_signs_that_the_text_face_lacks_are_in_the_other():
     text = FT2Font(str(resources.fonts()["Report", "regular"]))
     assert [sign for sign in SIGNS if text.get_char_index(ord(sign))] == []
     assert find_missing(SIGNS) == ""

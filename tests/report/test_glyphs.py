@@ -4,14 +4,13 @@ import os
 import subprocess
 import sys
 
-import pypdfium2
 import pytest
 
 from assess.i18n import load_catalogue, speaking
 from assess.report.fonts import find_missing, print_fonts, replace_signs
 from assess.report.pages import glyphs, pdf
 from assess.report.pages.pdf_layout import open_page
-from tests.report.reading import render
+from tests.report.reading import read_pages, render
 from tests.workbooks import assessed, write
 
 FIX = "Install a font that does, such as Noto (Debian: apt install fonts-noto-core fonts-noto-cjk)."
@@ -27,18 +26,12 @@ def _items(*descriptions, **more):
 @pytest.mark.parametrize(
     ("text", "missing"),
     [
-        ("Bücherregal, scaffale, étagère", ""),
-        ("ντουλάπι βιβλίων", ""),
-        ("книжный шкаф", ""),
+        ("Bücherregal, scaffale, étagère", ""), ("ντουλάπι βιβλίων", ""), ("книжный шкаф", ""),
         ("خزانة كتب", ""),  # Arabic: DejaVu holds it
-        ("本棚と椅子", "本棚と椅子"),
-        ("书柜", "书柜"),
-        ("책장", "책장"),
-        ("🪑 chair", "🪑"),
-        ("≤ 1 m² ± α → ○ ◇ ▲ ■ ⚓ �", ""),
-        ("plain\tASCII\n", ""),
+        ("本棚と椅子", "本棚と椅子"), ("书柜", "书柜"), ("책장", "책장"), ("🪑 chair", "🪑"),
+        ("≤ 1 m² ± α → ○ ◇ ▲ ■ ⚓ �", ""), ("plain\tASCII\n", ""),
     ],
-)
+)  # fmt: skip
 def test_the_fonts_hold(text, missing):
     assert find_missing(text) == missing
 
@@ -50,7 +43,7 @@ def test_every_text_of_ours_is_in_our_fonts():
         assert find_missing("".join(texts)) == ""
 
 
-def test_each_field_is_told_once_with_its_first_cell(tmp_path, monkeypatch):
+def test_each_field_is_told_once_many_are_counted_marks_are_not_told_and_borrowed_fonts_a_note(tmp_path, monkeypatch):
     monkeypatch.setattr(pdf, "find_nowhere", frozenset)
     items = [*_items("Shelf"), *_items("本棚", "椅子", room="書庫", notes="机")]
     items = [item | {"item": f"A{at}"} for at, item in enumerate(items)]
@@ -63,6 +56,22 @@ def test_each_field_is_told_once_with_its_first_cell(tmp_path, monkeypatch):
         f"Items!AC3: Notes of 2 rows: no font here holds 机 (U+673A); the PDF has � instead. {FIX}",
     ]
     assert {one.severity for one in pdf.list_problems(results)} == {"warning"}
+    missing = [glyphs.Missing("Items", f"A{at}", "Room", 1, "本") for at in range(14)]
+    told = glyphs.describe(missing, {"本"})
+    assert len(told) == 11
+    assert str(told[-1]) == "the same is true of 4 more fields."
+    assert str(glyphs.describe(missing[:11], {"本"})[-1]) == "the same is true of 1 more field."
+    monkeypatch.setattr(pdf, "find_nowhere", lambda _: frozenset())
+    text = "wide\u3000space, \u2068isolate\u2069, \ufe0f, \u00ad"
+    assert pdf.list_problems(assessed(tmp_path / "w.xlsx", _items(text))) == []
+    monkeypatch.setattr(pdf, "find_nowhere", lambda _: frozenset())
+    results = assessed(tmp_path / "w.xlsx", _items("一二三四五六七"))
+    (problem,) = pdf.list_problems(results)
+    assert problem.severity == "note"
+    assert problem.message == (
+        "Description: a font of this machine lends the PDF 一 (U+4E00), 二 (U+4E8C), 三 (U+4E09), 四 (U+56DB), "
+        "五 (U+4E94) and 2 more; figures may have boxes instead."
+    )
 
 
 _ON_A_BARE_MACHINE = """
@@ -101,7 +110,7 @@ def test_a_machine_without_fonts_writes_the_same_report(tmp_path):
     assert [line.split(":")[0] for line in told] == ["Building!B1", "Building!B19", "Items!E2"]
     assert "本 (U+672C), 棚 (U+68DA), 🪑 (U+1FA91), अ (U+0905), ल (U+0932) and " in told[2]
     for path in (plain, accessible):
-        text = _read(path)
+        text = " ".join(read_pages(path))
         assert "�� Tower" in text
         assert "ντουλάπι" in text
         assert "no font here holds � (U+6771)" in text
@@ -118,36 +127,4 @@ def test_no_box_is_in_a_pdf(tmp_path, caplog, monkeypatch):
     shown = open_page(replace_signs(page, find_missing(page)), print_fonts())  # in this process, for its log
     shown.write_pdf(tmp_path / "a.pdf", pdf_variant="pdf/a-3u")
     assert ".notdef" not in caplog.text
-    assert "��" in _read(tmp_path / "a.pdf")
-
-
-def _read(path):
-    document = pypdfium2.PdfDocument(path)
-    text = " ".join(document[at].get_textpage().get_text_range() for at in range(len(document)))
-    document.close()
-    return " ".join(text.split())
-
-
-def test_marks_that_nobody_sees_are_not_told(tmp_path, monkeypatch):
-    monkeypatch.setattr(pdf, "find_nowhere", lambda _: frozenset())
-    text = "wide\u3000space, \u2068isolate\u2069, \ufe0f, \u00ad"
-    assert pdf.list_problems(assessed(tmp_path / "w.xlsx", _items(text))) == []
-
-
-def test_many_fields_are_counted():
-    missing = [glyphs.Missing("Items", f"A{at}", "Room", 1, "本") for at in range(14)]
-    told = glyphs.describe(missing, {"本"})
-    assert len(told) == 11
-    assert str(told[-1]) == "the same is true of 4 more fields."
-    assert str(glyphs.describe(missing[:11], {"本"})[-1]) == "the same is true of 1 more field."
-
-
-def test_a_font_of_the_machine_that_helps_out_is_a_note(tmp_path, monkeypatch):
-    monkeypatch.setattr(pdf, "find_nowhere", lambda _: frozenset())
-    results = assessed(tmp_path / "w.xlsx", _items("一二三四五六七"))
-    (problem,) = pdf.list_problems(results)
-    assert problem.severity == "note"
-    assert problem.message == (
-        "Description: a font of this machine lends the PDF 一 (U+4E00), 二 (U+4E8C), 三 (U+4E09), 四 (U+56DB), "
-        "五 (U+4E94) and 2 more; figures may have boxes instead."
-    )
+    assert "��" in " ".join(read_pages(tmp_path / "a.pdf"))

@@ -73,20 +73,13 @@ def test_options_that_contradict_or_cannot_be_used(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-# ---------------------------------------------------------------- drawn earthquakes
-
 ITEMS = [{"item": "A", "floor": "1", "axis": "X", "breadth": 40, "width": 90, "height": 180}]
 SETTINGS = Settings(city=True, runs=20)
 
 
-@pytest.fixture(scope="module")
-def placed(tmp_path_factory):
-    path = tmp_path_factory.mktemp("city") / "w.xlsx"
-    return assessed(path, ITEMS, [{"floor": "1", "pfa_x": 0.45}], settings=SETTINGS, period=0.8, motion_uncertainty=0.4,
-                    latitude=37.79, longitude=-122.4)  # fmt: skip
-
-
-def test_nothing_is_said_of_draws_that_were_not_made(placed):
+def test_nothing_is_said_of_draws_that_were_not_made(tmp_path):
+    placed = assessed(tmp_path / "w.xlsx", ITEMS, [{"floor": "1", "pfa_x": 0.45}], settings=SETTINGS, period=0.8,
+                      motion_uncertainty=0.4, latitude=37.79, longitude=-122.4)  # fmt: skip
     assert say_draws(replace(placed, settings=replace(SETTINGS, ideal=True))) == ""
     fixed = replace(placed.provenance, uncertainty=replace(placed.provenance.uncertainty, motion=0.0))
     assert say_draws(replace(placed, provenance=fixed)) == ""

@@ -37,11 +37,9 @@ ROUTES = [
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
-    path = tmp_path_factory.mktemp("layout") / "w.xlsx"
     building = [{"building": f"{LONG} hall", "revision": "B", "azimuth_deg": 45, "prepared_by": LONG}]
     rows = {"Building": building, "Floors": FLOORS, "Items": PIECES, "Places": PLACES, "Routes": ROUTES}
-    write_sheets(path, rows)
-    return assess.run(path, UNVERIFIED)
+    return assess.run(write_sheets(tmp_path_factory.mktemp("layout") / "w.xlsx", rows), UNVERIFIED)
 
 
 @pytest.fixture(scope="module")
@@ -64,33 +62,29 @@ def _text(box):
     return "".join(one.text for one in _of(box, boxes.TextBox))
 
 
-def _right(box):
-    return max((one.position_x + one.width for one in _of(box, boxes.TextBox)), default=0)
-
-
-def test_no_table_runs_past_the_margin(pages):
+def test_no_table_runs_past_the_margin_and_no_text_out_of_its_cell(pages):
     tables = [(page, table) for page in pages for table in _of(page, boxes.TableBox)]
     assert len(tables) > 10
     for page, table in tables:
         assert table.position_x + table.margin_width() <= page.content_box_x() + page.width + 0.5, _text(table)[:80]
-
-
-def test_no_text_runs_out_of_its_cell(pages):
     for page in pages:
         for table in _of(page, boxes.TableBox):
             if "short" in table.element.get("class", ""):  # rows of one line, cut at the end of the cell
                 continue
             for cell in _of(table, boxes.TableCellBox):
                 end = cell.content_box_x() + cell.width
-                assert all(_right(line) <= end + 0.5 for line in _of(cell, boxes.LineBox)), _text(cell)
-
-
-def _heads(pages):
-    return [cell for page in pages for cell in _of(page, boxes.TableCellBox) if cell.element_tag == "th"]
+                assert all(
+                    max((one.position_x + one.width for one in _of(line, boxes.TextBox)), default=0) <= end + 0.5
+                    for line in _of(cell, boxes.LineBox)
+                ), _text(cell)
 
 
 def test_words_of_a_head_are_broken_at_a_syllable_only(pages):
-    heads = [head for head in _heads(pages) if head.element.get("scope") == "col"]
+    heads = [
+        head
+        for head in [cell for page in pages for cell in _of(page, boxes.TableCellBox) if cell.element_tag == "th"]
+        if head.element.get("scope") == "col"
+    ]
     assert len(heads) > 40
     for head in heads:
         whole = "".join(head.element.itertext()).split()
@@ -101,15 +95,12 @@ def test_words_of_a_head_are_broken_at_a_syllable_only(pages):
             assert is_end_of_word or (last.endswith("‐") and len(last) > 3), whole
 
 
-def test_the_foot_of_a_page_is_one_line(pages):
+def test_the_foot_of_a_page_is_one_line_and_its_head_the_section_in_force_where_it_begins(pages):
     for page in pages:
         feet = [one for one in _of(page, boxes.MarginBox) if one.at_keyword in ("@bottom-left", "@bottom-right")]
         assert len(feet) == 2
         for foot in feet:
             assert len(_of(foot, boxes.LineBox)) == 1, _text(foot)
-
-
-def test_the_running_head_is_the_section_in_force_where_the_page_begins(pages):
     chapter = ""
     for page in pages:
         heads = [one for one in _of(page, boxes.BlockBox) if one.element_tag == "h2"]
@@ -123,7 +114,7 @@ def test_the_running_head_is_the_section_in_force_where_the_page_begins(pages):
         chapter = _text(titles[-1]) if titles else chapter
 
 
-def test_a_floor_with_its_plan_stays_on_one_page(pages):
+def test_a_floor_with_its_plan_stays_on_one_page_and_the_approval_block_has_room_for_signatures(pages):
     floors = [
         (at, one.element.get("id"))
         for at, page in enumerate(pages)
@@ -131,9 +122,6 @@ def test_a_floor_with_its_plan_stays_on_one_page(pages):
         if one.element_tag == "article" and one.element.get("id", "").startswith("floor-")
     ]
     assert len(floors) == len({name for _at, name in floors}) == 2
-
-
-def test_the_approval_block_has_room_for_signatures(pages):
     (table,) = [one for one in _of(pages[0], boxes.TableBox) if "signing" in one.element.get("class", "")]
     rows = [row for row in _of(table, boxes.TableRowBox) if row.element.getparent().tag == "tbody"] if hasattr(
         table.element, "getparent") else _of(table, boxes.TableRowBox)[1:]  # fmt: skip
@@ -145,23 +133,15 @@ LEVELS = [
     {"floor": name, "name": title, "elevation": at, "pfa_x": 0.5, "pfv_x": 40, "pfa_y": 0.5, "pfv_y": 45}
     for name, title, at in (("Second", "Second floor", 8), ("Mezzanine", "", 4), ("Basement", "", -3))
 ]  # fmt: skip
-
-
 ROOMS = ["Physiotherapy", "Echocardiography waiting area", "Gastroenterology", "Sterilisation"]
-
-
 WHAT = ["Refrigerator for vaccines", "Electrocardiograph on a trolley", "Bookcase, partly anchored",
         "Uninterruptible power supply"]  # fmt: skip
-
-
 HOSPITAL = [
     {"item": f"{LEVELS[at % 3]['floor']}-{at:02}", "floor": LEVELS[at % 3]["floor"], "room": ROOMS[at % 4],
      "description": WHAT[at % 4], "breadth": 30 + 5 * (at % 4), "width": 80, "height": 180,
      "anchored": "yes" if at % 7 == 0 else "no", "importance": "life safety" if at % 5 == 0 else None}
     for at in range(24)
 ]  # fmt: skip
-
-
 TABLES = {"items", "pieces", "named"}
 
 

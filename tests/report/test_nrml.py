@@ -18,11 +18,6 @@ from tests.report.made_fragilities import BARE, RISING, UNEVEN, assess_small, sh
 TAG = "{http://openquake.org/xmlns/nrml/0.5}"
 
 
-@pytest.fixture(scope="module")
-def small():
-    return assess_small()
-
-
 def read(written):
     """Return the description, and the chance at each level [g] of ground PGA by taxonomy, as the format defines it."""
     ((name, data),) = written.files.items()
@@ -71,7 +66,7 @@ def test_each_floor_has_the_chances_of_its_amplification(small):
         assert words in description
 
 
-def test_a_stronger_earthquake_changes_no_chance(small):
+def test_a_stronger_earthquake_changes_no_chance_tables_that_end_early_are_left_out_and_names_are_unique(small):
     """The ground grows with the floors, so that the ratio stays."""
     assessment, found = small
     twice = assess_small(scale=2.0)
@@ -81,10 +76,7 @@ def test_a_stronger_earthquake_changes_no_chance(small):
         for one, each in ((assessment, found), twice)
     )
     assert scaled == pytest.approx(once, rel=1e-4)
-
-
-def test_tables_that_end_early_are_left_out(small):
-    """OpenQuake keeps the last chance of a table at every higher level, which would look safer than it is."""
+    # OpenQuake keeps the last chance of a table at every higher level, which would look safer than it is.
     assessment, found = small
     found = shape_curves(
         found, ("Shelf", RISING), ("Early", UNEVEN[:-1]), ("Late", UNEVEN[1:]), ("Still", (0.0, 0.0)), ("One", (0.5,))
@@ -97,9 +89,6 @@ def test_tables_that_end_early_are_left_out(small):
     assert "give levels from where at most 2% overturn to where at least 98% do" in why["Early"]
     assert why["One"] == "not fitted: the levels are fewer than two"
     assert "Left out: Late: " in description
-
-
-def test_names_of_any_kind_are_well_formed_and_unique(small):
     assessment, found = small
     names = ["a\x00b", "<b>&\"'#", "Ａ|1", "a|1", "書架", "\ud800", "]]>"]
     found = shape_curves(found, *((name, RISING) for name in names))
@@ -109,9 +98,12 @@ def test_names_of_any_kind_are_well_formed_and_unique(small):
     assert "書架 on floor 1" in description
 
 
-def test_pfv_is_refused_with_the_reason():
+def test_pfv_is_refused_with_the_reason_and_nothing_written_where_no_curve_can_be(small):
     with pytest.raises(InputError, match=r"formats: OpenQuake computes accelerations of the ground, .* Take PFA"):
         write_nrml(*assess_small(im="pfv"))
+    assessment, found = small
+    with pytest.raises(InputError, match=r"none of the 1 curves can be written for OpenQuake. The first is S: no log"):
+        write_nrml(assessment, shape_curves(found, ("S", (0.0, 0.0))))
 
 
 @pytest.mark.parametrize("building", [{"Height [m]": 9}, {"Height [m]": 9, "SDS [g]": 1.0}])
@@ -128,9 +120,3 @@ def test_a_profile_starts_from_the_ground_of_sds():
     description, chances = read(write_nrml(assessment, shape_curves(found, ("Shelf", RISING))))
     assert "Ground PGA 0.4 g" in description
     assert "Shelf|2" in chances
-
-
-def test_nothing_is_written_where_no_curve_can_be(small):
-    assessment, found = small
-    with pytest.raises(InputError, match=r"none of the 1 curves can be written for OpenQuake. The first is S: no log"):
-        write_nrml(assessment, shape_curves(found, ("S", (0.0, 0.0))))

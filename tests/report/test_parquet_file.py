@@ -29,7 +29,7 @@ def read(path):
         return columns, found.fetchall()
 
 
-def test_it_holds_what_the_table_holds(tmp_path):
+def test_it_holds_what_the_table_holds_with_the_types_of_the_fields_whatever_is_filled_in(tmp_path):
     results = assess_rows(*FULL)
     write_parquet(results, tmp_path / "it's.parquet")
     write_csv(results, tmp_path / "items.csv")
@@ -46,10 +46,7 @@ def test_it_holds_what_the_table_holds(tmp_path):
                 assert float(text) == pytest.approx(value), key
             elif key != "item":
                 assert text == (value or ""), key
-
-
-def test_the_types_are_those_of_the_fields_whatever_is_filled_in(tmp_path):
-    """Two buildings can be read as one table, also where a column of one is all empty."""
+    # Two buildings can be read as one table, also where a column of one is all empty.
     write_parquet(assess_rows(ITEM), tmp_path / "a.parquet")
     write_parquet(assess_rows(*FULL), tmp_path / "b.parquet")
     (sparse, _), (full, _) = (read(tmp_path / f"{name}.parquet") for name in "ab")

@@ -17,7 +17,7 @@ from assess.report.content import Content
 from assess.report.pages.pdf import list_problems
 from assess.report.report_options import ReportOptions
 from assess.results import Series
-from tests.report.reading import write_pdf
+from tests.report.reading import read_pages, write_pdf
 from tests.workbooks import assessed
 
 EPOCH = 1_700_000_000
@@ -44,28 +44,20 @@ def _attachments(document):
     }
 
 
-def test_it_tells_what_it_is(report):
-    _, _, document = report
+def test_it_tells_what_it_is_with_workbook_and_results_attached_and_every_font_embedded(report):
+    _, written, document = report
     told = document.get_metadata_dict()
     assert "Town hall & Café" in told["Title"]
     assert told["Author"] == "Ann Bee, Us & Co"
     assert told["Keywords"]
     assert told["Creator"] == f"assess {assess.__version__}"
     assert told["CreationDate"] == told["ModDate"] == "D:20231114221320Z"
-    assert _language(document) == "it"
+    size = pdfium.FPDFCatalog_GetLanguage(document.raw, None, 0)
+    language = ctypes.create_string_buffer(size)
+    pdfium.FPDFCatalog_GetLanguage(document.raw, ctypes.cast(language, ctypes.POINTER(ctypes.c_ushort)), size)
+    assert language.raw.decode("utf-16-le").rstrip("\0") == "it"
     assert len(document) > 5
     assert document.is_tagged()
-
-
-def _language(document):
-    size = pdfium.FPDFCatalog_GetLanguage(document.raw, None, 0)
-    text = ctypes.create_string_buffer(size)
-    pdfium.FPDFCatalog_GetLanguage(document.raw, ctypes.cast(text, ctypes.POINTER(ctypes.c_ushort)), size)
-    return text.raw.decode("utf-16-le").rstrip("\0")
-
-
-def test_workbook_and_results_are_attached_byte_for_byte(report):
-    _, written, document = report
     source = written["pdf"].parents[1] / "Büro 1.xlsx"
     assert _attachments(document) == {
         source.name: source.read_bytes(),
@@ -78,10 +70,6 @@ def test_workbook_and_results_are_attached_byte_for_byte(report):
     assert set(re.findall(rb"/AFRelationship /(\w+)", packed)) == {b"Source", b"Data"}
     dates = re.findall(rb"/(?:Creation|Mod)Date \((D:\d{14}Z)\)", data + packed)
     assert dates == [b"D:20231114221320Z"] * 6
-
-
-def test_every_font_is_embedded_and_of_the_report(report):
-    _, _, document = report
     fonts = {}
     for page in document:
         for one in page.get_objects(filter=[pdfium.FPDF_PAGEOBJ_TEXT]):
@@ -95,7 +83,7 @@ def test_every_font_is_embedded_and_of_the_report(report):
 
 
 @pytest.mark.slow
-def test_an_accessible_report_has_the_workbook_that_was_read_whatever_became_of_its_file(tmp_path):
+def test_a_report_has_the_workbook_that_was_read_and_without_its_series_names_what_is_left_out(tmp_path):
     results, read = assessed(tmp_path / "w.xlsx"), (tmp_path / "w.xlsx").read_bytes()
     (tmp_path / "w.xlsx").write_bytes(b"changed")
     assert list_problems(results) == []
@@ -106,6 +94,19 @@ def test_an_accessible_report_has_the_workbook_that_was_read_whatever_became_of_
     document.close()
     assert list(attached) == ["results.json", "w.xlsx"]
     assert attached["w.xlsx"] == read
+    results = assessed(tmp_path / "w.xlsx")
+    gone = replace(results, series=Series(tmp_path / "none.npz"))
+    assert [str(one) for one in list_problems(gone)] == [
+        "w.xlsx is not attached to the PDF: the results hold no copy of it."
+    ]
+    write_pdf(Content(gone), tmp_path / "a.pdf", ReportOptions(), edition="annex")
+    document = pypdfium2.PdfDocument(tmp_path / "a.pdf")
+    text = " ".join(read_pages(tmp_path / "a.pdf"))
+    assert list(_attachments(document)) == ["results.json"]
+    assert "w.xlsx is not attached to the PDF" in text
+    assert "Figures are left out" in text
+    assert "risk over breadth and acceleration" in text
+    document.close()
 
 
 def _unpack(path):
@@ -114,23 +115,6 @@ def _unpack(path):
 
     found = re.findall(rb"stream\n(.*?)\nendstream", path.read_bytes(), re.DOTALL)
     return b"".join(zlib.decompress(one) for one in found if one[:1] == b"\x78" and len(one) < 200_000)
-
-
-@pytest.mark.slow
-def test_without_its_series_a_report_names_what_is_left_out(tmp_path):
-    results = assessed(tmp_path / "w.xlsx")
-    gone = replace(results, series=Series(tmp_path / "none.npz"))
-    assert [str(one) for one in list_problems(gone)] == [
-        "w.xlsx is not attached to the PDF: the results hold no copy of it."
-    ]
-    write_pdf(Content(gone), tmp_path / "a.pdf", ReportOptions(), edition="annex")
-    document = pypdfium2.PdfDocument(tmp_path / "a.pdf")
-    text = " ".join(" ".join(document[at].get_textpage().get_text_range() for at in range(len(document))).split())
-    assert list(_attachments(document)) == ["results.json"]
-    assert "w.xlsx is not attached to the PDF" in text
-    assert "Figures are left out" in text
-    assert "risk over breadth and acceleration" in text
-    document.close()
 
 
 def test_a_cancelled_layout_ends_at_once(tmp_path, monkeypatch):

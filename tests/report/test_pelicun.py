@@ -13,11 +13,6 @@ from assess.units import GRAVITY
 from tests.report.made_fragilities import RISING, STEEP, UNEVEN, assess_small, shape_curves
 
 
-@pytest.fixture(scope="module")
-def small():
-    return assess_small()
-
-
 def read(written):
     table, about = (written.files[f"small office-pelicun.{kind}"].decode() for kind in ("csv", "json"))
     return list(csv.DictReader(io.StringIO(table))), json.loads(about)
@@ -44,7 +39,7 @@ def test_medians_and_betas_are_those_found(im, demand, unit, size):
         assert row["ID"].endswith(f".{im}")
 
 
-def test_identifiers_are_safe_and_unique(small):
+def test_identifiers_are_safe_and_unique_and_nothing_is_written_where_there_is_no_lognormal(small):
     """A name that reads as a formula, as markup or in another script; alike but for case; alike after shortening."""
     assessment, found = small
     names = ["=1+2", "<b>Böse & 'Co'</b>", "書架", "shelf a", "Shelf-A", "Shelf A 2", "x" * 99, "x" * 98, "書"]
@@ -53,9 +48,6 @@ def test_identifiers_are_safe_and_unique(small):
     assert len({one.lower() for one in ids}) == len(names)
     assert all(re.fullmatch(r"assess(\.[A-Za-z0-9]+)+", one) for one in ids)
     assert [about[one]["Description"].partition(": base")[0] for one in ids] == names
-
-
-def test_nothing_is_written_where_there_is_no_lognormal(small):
     assessment, found = small
     with pytest.raises(
         InputError, match=r"formats: none of the 1 curves can be written for pelicun. The first is U: no"

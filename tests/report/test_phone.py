@@ -65,7 +65,7 @@ def test_nothing_runs_off_the_edge(look, width):
     assert page.evaluate(OVER_THE_EDGE, width) == []
 
 
-def test_rows_are_cards_whose_cells_have_the_heads_of_their_columns(look):
+def test_rows_are_cards_whose_cells_have_the_heads_of_their_columns_and_axe_finds_nothing(look):
     page = look(PHONE)
     assert page.evaluate(CELLS_WITHOUT_A_LABEL) == []
     heads = page.locator("#pieces thead th").evaluate_all("all => all.map(one => one.textContent)")
@@ -79,17 +79,14 @@ def test_rows_are_cards_whose_cells_have_the_heads_of_their_columns(look):
         first, second = (page.locator(f"table.{name} tbody tr").first.locator("td").nth(at) for at in (0, 1))
         assert first.bounding_box()["y"] < second.bounding_box()["y"]
         assert first.evaluate(shown) != "none"
-
-
-def test_axe_finds_nothing_serious(look):
-    """Also none of less weight: whatever axe-core is sure of. Of the rows of each table, which are alike, eight."""
+    # Also none of less weight: whatever axe-core is sure of. Of the rows of each table, which are alike, eight.
     page = look(PHONE)
     page.evaluate(FURTHER_ROWS_AWAY, 8)
     assert page.evaluate("matchMedia('(prefers-color-scheme: dark)').matches") is False, "there is one scheme"
-    assert _examine(page) == []
+    assert examine(page) == []
 
 
-def _examine(page):
+def examine(page):
     """Return what axe-core finds: rule, impact and the first element of each."""
     page.evaluate(AXE.read_text(encoding="utf-8"))
     found = page.evaluate("axe.run({resultTypes: ['violations']})")["violations"]

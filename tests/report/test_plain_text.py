@@ -3,11 +3,9 @@
 import csv
 import json
 import re
-import zipfile
 from html.parser import HTMLParser
 
 import docx
-import formualizer
 import openpyxl
 import pypdfium2
 import pytest
@@ -15,8 +13,10 @@ import pytest
 import assess
 from assess.report.pages.html import hash_script
 from assess.workbook.schema import SHEETS
+from tests.motion.writers import zipped
+from tests.recalculate import evaluate
 from tests.report.reading import no_figures
-from tests.workbooks import write_sheets
+from tests.workbooks import parts_of, write_sheets
 
 FORMULA = '=HYPERLINK("http://x","y")'
 SCRIPT = "<script>alert(1)</script>"
@@ -52,46 +52,27 @@ def outputs(tmp_path_factory):
               "y": 1}],
     }  # fmt: skip
     path = folder / "w.xlsx"
-    write_sheets(path, rows)
-    _unescape_controls(path)
+    parts = parts_of(write_sheets(path, rows))
+    # XlsxWriter escapes the escape; a hostile file has the control character itself behind _xHHHH_.
+    path.write_bytes(zipped({name: data.replace(b"_x005F_x00", b"_x00") for name, data in parts.items()}))
     results = assess.run(path)
     with no_figures():
         return results, assess.write_reports(results, folder / "out", ("xlsx", "html", "json", "csv", "docx"))
 
 
-def _unescape_controls(path):
-    """XlsxWriter escapes the escape; a hostile file has the control character itself behind _xHHHH_."""
-    with zipfile.ZipFile(path) as archive:
-        parts = {name: archive.read(name).replace(b"_x005F_x00", b"_x00") for name in archive.namelist()}
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in parts.items():
-            archive.writestr(name, data)
-
-
-def test_the_inventory_is_cleaned_and_says_so(outputs):
+def test_the_inventory_is_cleaned_and_says_so_and_json_and_csv_have_its_texts(outputs):
     results, _ = outputs
     texts = [one.item.notes for one in results]
     assert texts[:4] == [FORMULA, SCRIPT, PATH, LONG.strip()]
     assert texts[4] == "bell\ufffdnull\ufffd end"
     assert texts[5] == "abcdef"
     assert any("control or direction characters" in one.message for one in results.problem_rows)
-
-
-def _no_hidden(text):
-    return not re.search("[\x00-\x08\x0b\x0c\x0e-\x1f\u202a-\u202e\u2066-\u2069\u200e\u200f]", text)
-
-
-def test_json(outputs):
     _, written = outputs
     text = written["json"].read_text(encoding="utf-8")
     items = json.loads(text)["items"]
     for name in ("room", "description", "notes"):
         assert [item[name] for item in items][:4] == [FORMULA, SCRIPT, PATH, LONG.strip()]
     assert _no_hidden(text)
-
-
-def test_csv(outputs):
-    _, written = outputs
     text = written["csv"].read_text(encoding="utf-8-sig")
     assert _no_hidden(text)
     rows = list(csv.DictReader(text.splitlines()))
@@ -101,24 +82,21 @@ def test_csv(outputs):
         assert rows[3][name] == LONG.strip()
 
 
+def _no_hidden(text):
+    return not re.search("[\x00-\x08\x0b\x0c\x0e-\x1f\u202a-\u202e\u2066-\u2069\u200e\u200f]", text)
+
+
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
-def test_excel_counts_a_floor_with_such_a_name(outputs):
+def test_excel_which_counts_a_floor_with_such_a_name(outputs):
     """A name such as =HYPERLINK(...) is no criterion: the floor's pieces are counted."""
     results, written = outputs
-    book = formualizer.load_workbook(str(written["xlsx"]))
-    book.evaluate_all()
+    book = evaluate(written["xlsx"])
     summary = openpyxl.load_workbook(written["xlsx"])["Summary"]
     tops = [cell.row for row in summary.iter_rows(max_col=1) for cell in row if cell.value == "Floor"]
     counts = [book.get_value("Summary", top + 1, 9) for top in tops]
     assert sum(counts) == len(results)
-
-
-@pytest.mark.filterwarnings("ignore:.*extension is not supported")
-def test_excel(outputs):
-    _, written = outputs
-    book = openpyxl.load_workbook(written["xlsx"])
     texts = set()
-    for sheet in book:
+    for sheet in openpyxl.load_workbook(written["xlsx"]):
         for row in sheet.iter_rows():
             for cell in row:
                 assert cell.hyperlink is None
@@ -127,10 +105,10 @@ def test_excel(outputs):
                 elif isinstance(cell.value, str):
                     texts.add(cell.value)
     assert {FORMULA, SCRIPT, PATH, LONG.strip()} <= texts
-    with zipfile.ZipFile(written["xlsx"]) as archive:
-        raw = b"".join(archive.read(name) for name in archive.namelist() if name.endswith(".xml")).decode()
+    parts = parts_of(written["xlsx"])
+    raw = b"".join(data for name, data in parts.items() if name.endswith(".xml")).decode()
     assert "<f>HYPERLINK" not in raw
-    assert not any("hyperlink" in name for name in archive.namelist())
+    assert not any("hyperlink" in name for name in parts)
     assert _no_hidden(raw)
 
 
@@ -178,10 +156,9 @@ def test_word(outputs):
     shown = " ".join(" ".join(texts).split())
     assert SCRIPT in shown
     assert FORMULA in shown
-    with zipfile.ZipFile(written["docx"]) as archive:
-        parts = {name: archive.read(name).decode() for name in archive.namelist() if name.endswith((".xml", ".rels"))}
-    assert not any('TargetMode="External"' in text for text in parts.values())
-    assert all(_no_hidden(text) for text in parts.values())
+    texts = [data.decode() for name, data in parts_of(written["docx"]).items() if name.endswith((".xml", ".rels"))]
+    assert not any('TargetMode="External"' in text for text in texts)
+    assert all(_no_hidden(text) for text in texts)
 
 
 @pytest.mark.slow

@@ -6,12 +6,9 @@ import re
 import pytest
 
 import assess
-from assess.report.content import Content
 from assess.report.figures.labels import bounds, overlap
-from assess.report.figures.plan import build_plan
-from assess.report.figures.ways import build_stretches
 from assess.routes.geometry import fallen, rectangle
-from tests.report.reading import render
+from tests.report.reading import plans_of, render
 from tests.workbooks import FLOORS, UNVERIFIED, write_sheets
 
 PIECES = [
@@ -33,19 +30,7 @@ ROUTES = [{"route": "R", "segment": "a", "floor": "1", "start": "Hall", "end": "
 
 def _assess(path, pieces=PIECES, places=PLACES, routes=ROUTES, **building):
     rows = {"Building": [building], "Floors": FLOORS, "Items": pieces, "Places": places, "Routes": routes}
-    write_sheets(path, rows)
-    return assess.run(assess.read_inventory(path), UNVERIFIED)
-
-
-@pytest.fixture(scope="module")
-def html(assessment):
-    return render(assessment)
-
-
-def _plans(assessment):
-    ways = build_stretches(assessment.route_tables)
-    pages = Content(assessment).floors
-    return [build_plan(page, assessment, ways.get(page.floor.floor, ())) for page in pages]
+    return assess.run(assess.read_inventory(write_sheets(path, rows)), UNVERIFIED)
 
 
 @pytest.fixture(scope="module")
@@ -81,8 +66,8 @@ def test_a_fallen_piece_touches_its_footprint_at_any_angle(angle):
         assert ((x2 - x1) ** 2 + (y2 - y1) ** 2) ** 0.5 == pytest.approx(0.7)
 
 
-def test_pieces_with_a_position_are_drawn_and_those_that_may_fall_are_hatched(assessment):
-    plan, _second = _plans(assessment)
+def test_pieces_with_a_position_are_drawn_hatched_where_they_may_fall_and_links_lead_somewhere(assessment):
+    plan, _second = plans_of(assessment)
     assert [one.number for one in plan.pieces] == [1, 2, 3]
     risky, anchored, low = plan.pieces
     _near(risky.corners, rectangle((2, 3), 90, (-0.15, 0.15), 0.8))
@@ -91,25 +76,15 @@ def test_pieces_with_a_position_are_drawn_and_those_that_may_fall_are_hatched(as
     assert (anchored.class_name, anchored.symbol) == ("anchored", "⚓")
     assert (low.class_name, low.fallen) == ("low", ())
     assert plan.north == 45
-
-
-def test_labels_lie_inside_on_no_piece_and_not_on_each_other(tmp_path):
-    pieces = [
-        {"item": f"Shelf-{at}", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": 0.35 * (at % 10),
-         "y": 2.0 + 2 * (at // 10)}
-        for at in range(60)
-    ]  # fmt: skip
-    (plan, _second) = _plans(_assess(tmp_path / "w.xlsx", pieces, PLACES, ()))
-    boxes = [label.box for label in plan.labels]
-    assert 10 <= len(boxes) <= 40
-    assert all(overlap(one, other) == 0 for one, other in itertools.combinations(boxes, 2))
-    for left, low, right, high in boxes:
-        assert plan.low[0] <= left < right <= plan.high[0]
-        assert plan.low[1] <= low < high <= plan.high[1]
-    assert any(label.lead for label in plan.labels)
-
-
-def test_ids_are_unique_and_links_lead_somewhere(html):
+    assert plan.y(plan.high[1]) == 0
+    assert plan.y(4.0) < plan.y(3.0) < plan.size[1]
+    assert plan.x(3.0) - plan.x(2.0) == pytest.approx(1 / plan.unit, abs=0.02)
+    assert plan.y(2.0) - plan.y(3.0) == pytest.approx(1 / plan.unit, abs=0.02)
+    assert plan.outline([(plan.low[0], plan.high[1]), (plan.high[0], plan.high[1])]).startswith("M26 0L")
+    for piece in plan.pieces:
+        for corners in (piece.corners, *piece.fallen):
+            assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in corners)
+    html = render(assessment)
     ids = re.findall(r'\bid="([^"]+)"', html)
     assert len(ids) == len(set(ids))
     assert set(re.findall(r'href="#([^"]+)"', html)) <= set(ids)
@@ -118,7 +93,21 @@ def test_ids_are_unique_and_links_lead_somewhere(html):
     assert set(re.findall(r"url\(#([^)]+)\)", html)) <= set(ids)
 
 
-# ---------------------------------------------------------------- routes
+def test_labels_lie_inside_on_no_piece_and_not_on_each_other(tmp_path):
+    pieces = [
+        {"item": f"Shelf-{at}", "floor": "1", "breadth": 30, "width": 80, "height": 200, "x": 0.35 * (at % 10),
+         "y": 2.0 + 2 * (at // 10)}
+        for at in range(60)
+    ]  # fmt: skip
+    (plan, _second) = plans_of(_assess(tmp_path / "w.xlsx", pieces, PLACES, ()))
+    boxes = [label.box for label in plan.labels]
+    assert 10 <= len(boxes) <= 40
+    assert all(overlap(one, other) == 0 for one, other in itertools.combinations(boxes, 2))
+    for left, low, right, high in boxes:
+        assert plan.low[0] <= left < right <= plan.high[0]
+        assert plan.low[1] <= low < high <= plan.high[1]
+    assert any(label.lead for label in plan.labels)
+
 
 CORRIDOR = [
     {"place": "Office", "floor": "1", "x": 0.0, "y": 0.0, "kind": "room"},
@@ -143,18 +132,9 @@ BESIDE = [
 ]
 
 
-@pytest.fixture(scope="module")
-def routed(tmp_path_factory):
-    return _assess(tmp_path_factory.mktemp("routed") / "w.xlsx", BESIDE, CORRIDOR, WAYS)
-
-
-def _ways(plan):
-    return {one.name: one for one in plan.ways}
-
-
-def test_segments_are_bands_to_scale_that_go_on_round_a_bend(routed):
-    plan, _second = _plans(routed)
-    ways = _ways(plan)
+def test_segments_are_bands_to_scale_that_go_on_round_a_bend(tmp_path):
+    plan, _second = plans_of(_assess(tmp_path / "w.xlsx", BESIDE, CORRIDOR, WAYS))
+    ways = {one.name: one for one in plan.ways}
     assert set(ways) == {"<i>aisle</i>", "hall", "gap", "lane"}
     _near(ways["<i>aisle</i>"].corners, [(-0.75, -0.6), (11.5, -0.6), (11.5, 0.6), (-0.75, 0.6)])
     _near(ways["hall"].corners, [(11.5, -0.6), (11.5, 8.3), (8.5, 8.3), (8.5, -0.6)])
@@ -162,25 +142,11 @@ def test_segments_are_bands_to_scale_that_go_on_round_a_bend(routed):
         assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in one.corners)
 
 
-def test_y_points_upwards(assessment):
-    plan, _second = _plans(assessment)
-    assert plan.y(plan.high[1]) == 0
-    assert plan.y(4.0) < plan.y(3.0) < plan.size[1]
-    assert plan.x(3.0) - plan.x(2.0) == pytest.approx(1 / plan.unit, abs=0.02)
-    assert plan.y(2.0) - plan.y(3.0) == pytest.approx(1 / plan.unit, abs=0.02)
-    assert plan.outline([(plan.low[0], plan.high[1]), (plan.high[0], plan.high[1])]).startswith("M26 0L")
-    for piece in plan.pieces:
-        for corners in (piece.corners, *piece.fallen):
-            assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in corners)
-
-
 CROWD = [
     {"place": f"{kind or 'point'} {at}", "floor": "1", "x": 1.0 + 2.0 * at, "y": 5.0 + 3.0 * row, "kind": kind}
     for row, kind in enumerate(("room", "door", ""))
     for at in range(14)
 ]
-
-
 DRAFTED = [
     {"route": "To Exit 1 (draft)", "segment": str(at), "floor": "1", "start": f"room {at}", "end": f"door {at}",
      "clear_width": 0.9}
@@ -188,15 +154,10 @@ DRAFTED = [
 ]  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def crowded(tmp_path_factory):
-    walked = {"route": "Walked", "segment": "x", "floor": "1", "start": "door 0", "end": "point 0"}
-    return _assess(tmp_path_factory.mktemp("crowd") / "w.xlsx", PIECES[:3], CROWD, [*DRAFTED, walked])
-
-
-def test_names_cover_nothing_where_places_are_many(crowded):
+def test_names_cover_nothing_where_places_are_many(tmp_path):
     """Points of routes keep their dots without names, and doors that have no room are in no list below the plan."""
-    plan = _plans(crowded)[0]
+    walked = {"route": "Walked", "segment": "x", "floor": "1", "start": "door 0", "end": "point 0"}
+    plan = plans_of(_assess(tmp_path / "w.xlsx", PIECES[:3], CROWD, [*DRAFTED, walked]))[0]
     named = {spot.name for spot in plan.places} | {key.name for key in plan.keys}
     assert not [name for name in named if name.startswith("point")]
     assert {f"room {at}" for at in range(14)} <= named

@@ -14,14 +14,10 @@ EPOCH = "1700000000"
 
 
 def _run(book, out, formats, **environment):
-    """Run the command in a process of its own."""
     return subprocess.Popen(
         [sys.executable, "-m", "assess", "run", book, "--out", out, "--runs", "5", "--formats", ",".join(formats)],
-        env=os.environ | environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+        env=os.environ | environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
 
 
 @pytest.mark.slow

@@ -17,13 +17,12 @@ FLOORS = [{"floor": "1", "pfa_x": 0.5, "pfv_x": 60}, {"floor": "2", "pfa_x": 0.3
 TALL = {"breadth": 40, "height": 200}
 
 
-def _items(*sizes):
-    return [{"item": f"i{at}", "floor": "1", "axis": "X", **size} for at, size in enumerate(sizes)]
-
-
 def _choose(folder, *sizes, floors=FLOORS):
-    """Return the results, which hold the series while they live."""
-    return assessed(folder / "w.xlsx", _items(*sizes), floors)
+    return assessed(
+        folder / "w.xlsx",
+        [{"item": f"i{at}", "floor": "1", "axis": "X", **size} for at, size in enumerate(sizes)],
+        floors,
+    )
 
 
 def _ids(results, *names):
@@ -31,9 +30,6 @@ def _ids(results, *names):
     source = draw_contours(results).image.source
     drawn = list(ET.fromstring(base64.b64decode(source.partition(",")[2])).iter())
     return [sum(one.get("id", "") == name for one in drawn) for name in names]
-
-
-# --- what is chosen and computed ---
 
 
 def test_the_height_that_most_risky_pieces_share_and_of_those_as_common_the_larger(tmp_path):
@@ -64,11 +60,8 @@ def test_the_map_is_that_of_the_methods(tmp_path, pfv):
             assert risk[row, column] == pytest.approx(evaluate(case, Settings()).value[0], rel=1e-6)
 
 
-# --- what is drawn ---
-
-
 @pytest.mark.slow
-def test_one_piece_and_many(tmp_path):
+def test_one_piece_many_and_one_of_a_strange_name_whose_chance_is_everywhere_one(tmp_path):
     assert _ids(_choose(tmp_path, TALL), "piece", "name", "checked") == [3, 3, 2], "of FEMA P-58 and of the paper"
     many = _choose(tmp_path, *[{"breadth": 20 + 3 * at, "height": 200} for at in range(24)], TALL, TALL)
     pieces, names, chances = _ids(many, "piece", "name", "chance")
@@ -76,9 +69,8 @@ def test_one_piece_and_many(tmp_path):
     assert 3 <= names <= 3 * MOST_NAMES
     assert 3 * 4 <= chances <= 3 * len(LINES)
     assert len(draw_contours(many).image.source) < 340_000
-
-
-# --- where texts go ---
+    size = {"item": "棚 $x$ \u0628", "breadth": 5, "height": 300}
+    assert _ids(_choose(tmp_path, size, floors=[{"floor": "1", "pfa_x": 4.0, "pfv_x": 900}]), "piece") == [3]
 
 
 @pytest.mark.parametrize("shares", [False, True])
@@ -98,9 +90,3 @@ def test_ticks_are_written_once_with_the_decimal_sign_of_the_language(shares):
         assert "0,2" in labels[0]
         assert not any("." in text for one in labels for text in one)
         assert [text.get_text() for text in found[0][1].get_xticklabels()] == ["J.P. Room", "1,5"]
-
-
-@pytest.mark.slow
-def test_a_strange_name_and_a_chance_that_is_everywhere_one(tmp_path):
-    size = {"item": "棚 $x$ \u0628", "breadth": 5, "height": 300}
-    assert _ids(_choose(tmp_path, size, floors=[{"floor": "1", "pfa_x": 4.0, "pfv_x": 900}]), "piece") == [3]

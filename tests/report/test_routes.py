@@ -39,18 +39,14 @@ def test_a_piece_that_reaches_a_route_by_the_plan_is_urgent(routed):
     assert found["held"].routes == ("Yard",)
 
 
-@pytest.fixture(scope="module")
-def many(tmp_path_factory):
-    """Four pieces of low class that together bring a route over the risk, and one of medium class away from it."""
+def test_pieces_of_low_class_that_a_route_needs_fixed_are_in_the_list(tmp_path):
+    """Four pieces of low class together bring a route over the risk; one of medium class is away from it."""
     low = {"floor": "1", "breadth": 46, "height": 80, "anchored": "no", "route": "Back", "edge_distance": 0.0}
     items = [low | {"item": f"low {at}"} for at in range(4)]
     items.append({"item": "far", "floor": "1", "breadth": 50, "height": 110, "anchored": "no"})
     items.append({"item": "vital", "floor": "1", "breadth": 50, "height": 110, "anchored": "no",
                   "importance": "life safety"})  # fmt: skip
-    return assess_routed(tmp_path_factory.mktemp("many") / "w.xlsx", Items=items)
-
-
-def test_pieces_of_low_class_that_a_route_needs_fixed_are_in_the_list(many):
+    many = assess_routed(tmp_path / "w.xlsx", Items=items)
     classes = {one.item.item: one.adopted.upper for one in many}
     assert classes["low 0"] is RiskClass.LOW
     steps = list_steps(many.route_tables)
@@ -69,9 +65,6 @@ def test_pieces_of_low_class_that_a_route_needs_fixed_are_in_the_list(many):
     last = next(fix for fix in fixes if fix.steps and fix.steps[-1].place == len(steps))
     assert last.reason.endswith(f"of {len(steps)})")
     assert steps[-1].after < many.route_tables.risk <= steps[-1].before
-
-
-# ---------------------------------------------------------------- the pages on routes
 
 
 def _text(markup):

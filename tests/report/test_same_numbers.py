@@ -26,11 +26,8 @@ LABELS = {risk.word: risk.label for risk in RiskClass}
 
 @dataclass(frozen=True)
 class Written:
-    """A run and its reports."""
-
     results: Results
     paths: dict[str, Path]
-    folder: Path
 
 
 @pytest.fixture(
@@ -47,15 +44,11 @@ def written(request, tmp_path_factory):
         results = assess_rich(folder, Settings(verify=verify, runs=40, class_by=class_by))
     with no_figures():
         paths = assess.write_reports(results, folder / "out", ("json", "csv", "xlsx", "html", "npz"))
-    return Written(results, paths, folder)
+    return Written(results, paths)
 
 
 def _is(value: float | None) -> Any:
     return None if value is None else pytest.approx(value, abs=1e-9)
-
-
-def _number(shown: Any) -> Any:
-    return None if shown == "" else shown
 
 
 def _compare_items(rows: list[dict[str, Any]], written: Written) -> None:
@@ -73,7 +66,7 @@ def _compare_items(rows: list[dict[str, Any]], written: Written) -> None:
         assert row["proposed_or"] == _is(methods["proposed_or"]["value"])
         assert row["proposed_or_raw"] == _is(methods["proposed_or"]["raw"])
         assert row["kaneko_hayashi"] == _is(methods["kaneko_hayashi"]["value"])
-        assert _number(row["fema_p58"]) == _is(methods["fema_p58"]["value"])
+        assert (None if row["fema_p58"] == "" else row["fema_p58"]) == _is(methods["fema_p58"]["value"])
         assert row["basis"] == BASES[adopted["basis"]]
         assert row["class"].rstrip("*") == mark + LABELS[adopted["class"]]
         assert row["class_or"].rstrip("*") == mark + result.paper_class.label
@@ -86,19 +79,25 @@ def _compare_items(rows: list[dict[str, Any]], written: Written) -> None:
         assert found == [_is(value) if value else None for value in expected]
 
 
-def test_stored_items_are_those_of_results_json(written):
-    cells = stored_cells(written.paths["xlsx"])
-    _compare_items(read_items(cells, written.results), written)
-
-
-def test_recalculated_items_are_those_of_results_json(written):
-    cells = recalculate(written.paths["xlsx"], [])
-    _compare_items(read_items(cells, written.results), written)
+def test_stored_and_recalculated_items_are_those_of_results_json_and_every_parallel_record_stands_in_floors(written):
+    for cells in (stored_cells(written.paths["xlsx"]), recalculate(written.paths["xlsx"], [])):
+        _compare_items(read_items(cells, written.results), written)
+    sheet = openpyxl.load_workbook(written.paths["xlsx"], data_only=True)["Floors"]
+    lines = [row for row in sheet.iter_rows(min_row=2, max_col=8, values_only=True) if row[0]]
+    for floor in read_json(written.paths["json"])["floors"]:
+        own = [row for row in lines if row[0] == floor["floor"]]
+        for axis, at in (("X", 2), ("Y", 5)):
+            served = [one for one in floor["demands"] if one["axis"] == axis]
+            shown = [row for row in own if row[at] is not None]
+            assert len(shown) == len(served)
+            for one in served:
+                found = [row for row in shown if not one["record"] or row[at + 2].endswith(one["record"])]
+                assert [(row[at], row[at + 1]) for row in found] == [(_is(one["pfa_g"]), _is(one["pfv_cm_s"]))]
 
 
 def test_pieces_in_the_page_are_those_of_results_json(written):
     items = {one["item"]: one for one in read_json(written.paths["json"])["items"]}
-    rows = read_html(written.paths["html"].read_text(encoding="utf-8"))
+    rows, main = read_html(written.paths["html"].read_text(encoding="utf-8")), written.results.main_basis
     assert sorted(row["Item"][0] for row in rows) == sorted(items)
     for row in rows:
         one = items[row["Item"][0]]
@@ -115,34 +114,12 @@ def test_pieces_in_the_page_are_those_of_results_json(written):
             shown = [float(text) / 100 for text in re.findall(r"[\d.]+", row["Chance"][0])[1:]]
             assert shown == pytest.approx([adopted["low"], adopted["high"]], abs=6e-4)
         assert adopted["class"] in row["Class"][0]
-        _check_class(row, one, written.results.main_basis)
-
-
-def _check_class(row: dict[str, Any], one: dict[str, Any], main: str) -> None:
-    adopted, is_held = one["adopted"], one["anchor"]["counts_as_anchored"]
-    assert ("depends on its anchor" in row["Class"][0]) == is_held
-    is_main = adopted["basis"] in (main, "cannot rock")
-    apart = adopted["class"].replace(" ", "-") if is_main else f"apart-{adopted['basis']}"
-    assert row["style"][0] == ("anchored" if is_held else apart)
-    if "ideal_higher" not in adopted["flags"] and adopted["class_upper"] != adopted["class"]:
-        assert f"could be {adopted['class_upper']}" in row["Class"][0]
-
-
-def test_every_parallel_record_stands_in_floors(written):
-    sheet = openpyxl.load_workbook(written.paths["xlsx"], data_only=True)["Floors"]
-    lines = [row for row in sheet.iter_rows(min_row=2, max_col=8, values_only=True) if row[0]]
-    for floor in read_json(written.paths["json"])["floors"]:
-        own = [row for row in lines if row[0] == floor["floor"]]
-        for axis, at in (("X", 2), ("Y", 5)):
-            served = [one for one in floor["demands"] if one["axis"] == axis]
-            shown = [row for row in own if row[at] is not None]
-            assert len(shown) == len(served)
-            for one in served:
-                found = [row for row in shown if not one["record"] or row[at + 2].endswith(one["record"])]
-                assert [(row[at], row[at + 1]) for row in found] == [(_is(one["pfa_g"]), _is(one["pfv_cm_s"]))]
-
-
-# ---------------------------------------------------------------- the table for other programs
+        is_held, is_main = one["anchor"]["counts_as_anchored"], adopted["basis"] in (main, "cannot rock")
+        assert ("depends on its anchor" in row["Class"][0]) == is_held
+        apart = adopted["class"].replace(" ", "-") if is_main else f"apart-{adopted['basis']}"
+        assert row["style"][0] == ("anchored" if is_held else apart)
+        if "ideal_higher" not in adopted["flags"] and adopted["class_upper"] != adopted["class"]:
+            assert f"could be {adopted['class_upper']}" in row["Class"][0]
 
 
 def test_items_csv_and_the_table_of_a_notebook_are_results_json(written):
@@ -163,11 +140,7 @@ def test_items_csv_and_the_table_of_a_notebook_are_results_json(written):
             for step in place:
                 value = value[step]
             assert row[key] == ("" if value is None else str(value)), key
-            assert _in_table(series[key]) == value, key
-
-
-def _in_table(value: Any) -> Any:
-    return None if isinstance(value, float) and math.isnan(value) else value
+            assert (None if isinstance(series[key], float) and math.isnan(series[key]) else series[key]) == value, key
 
 
 def test_outcomes_npz_are_the_verification_of_results_json(written):
@@ -183,9 +156,6 @@ def test_outcomes_npz_are_the_verification_of_results_json(written):
         assert found["runs"][at] == one["verification"]["runs"]
         own, simulated = falls[at, : found["runs"][at]].sum(), one["verification"]
         assert own <= simulated["overturned"] <= simulated["draws"] - simulated["runs"] + own, "of it and those alike"
-
-
-# ---------------------------------------------------------------- counts
 
 
 def test_counts_are_the_same_everywhere(written):
@@ -204,19 +174,15 @@ def test_counts_are_the_same_everywhere(written):
     before = results.schedule.before
     assert (before.classes, before.anchored, before.apart) == (classes, anchored, apart)
     assert before.falls == pytest.approx(falls, rel=1e-12)
-    _check_excel(written, classes, anchored, _pieces(items))
+    sheet = openpyxl.load_workbook(written.paths["xlsx"], data_only=True)["Summary"]
+    rows = {row[0]: row[1:6] for row in sheet.iter_rows(max_col=6, values_only=True) if row[0]}
+    assert rows[BASES[results.main_basis]] == (*classes, sum(classes))
+    assert (rows["run again"][4], rows["anchored"][4], rows["all"][4]) == (0, anchored, _pieces(items))
     _check_page(written, classes, anchored, apart, falls)
 
 
 def _pieces(items: Any) -> int:
     return sum(one["quantity"] for one in items)
-
-
-def _check_excel(written: Written, classes: tuple[int, ...], anchored: int, every: int) -> None:
-    sheet = openpyxl.load_workbook(written.paths["xlsx"], data_only=True)["Summary"]
-    rows = {row[0]: row[1:6] for row in sheet.iter_rows(max_col=6, values_only=True) if row[0]}
-    assert rows[BASES[written.results.main_basis]] == (*classes, sum(classes))
-    assert (rows["run again"][4], rows["anchored"][4], rows["all"][4]) == (0, anchored, every)
 
 
 def _check_page(written: Written, classes: tuple[int, ...], anchored: int, apart: int, falls: float) -> None:

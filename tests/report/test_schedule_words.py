@@ -3,7 +3,6 @@
 import pytest
 
 import assess
-from assess.report.content import Content
 from assess.report.say import work as say
 from assess.report.words import say_bracket
 from assess.settings import Settings
@@ -23,30 +22,15 @@ ITEMS = [
     TALL | {"item": "part", "room": "Gamma", "anchored": "partly", "bracket_capacity": 0.05},
     TALL | {"item": "firm", "room": "Gamma", "anchored": "partly", "bracket_capacity": 5},
 ]
-COSTS = [{"detail": "L-bracket to studs", "unit_cost": 40.5, "source": "offer"}]
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 
-def assess_these(folder, items=ITEMS, costs=(), **building):
-    path = folder / "w.xlsx"
+def assess_these(folder, items=ITEMS, **building):
     building = {"motion_uncertainty": 0.4} | building
-    rows = {"Building": [building], "Floors": FLOORS, "Items": items, "Costs": list(costs)}
-    write_sheets(path, rows)
+    rows = {"Building": [building], "Floors": FLOORS, "Items": items}
+    path = write_sheets(folder / "w.xlsx", rows)
     return assess.run(assess.read_inventory(path), Settings(verify="none"))
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    return assess_these(tmp_path_factory.mktemp("words"), costs=COSTS)
-
-
-@pytest.fixture(scope="module")
-def content(results):
-    return Content(results)
-
-
-# ---------------------------------------------------------------- names
 
 
 @pytest.mark.parametrize(
@@ -62,9 +46,6 @@ def content(results):
 )
 def test_names_are_shortened(names, short):
     assert say.join_names(say.shorten_names(names)) == short
-
-
-# ---------------------------------------------------------------- work
 
 
 @pytest.mark.parametrize(("anchored", "counts"), [("yes", "anchored"), ("partly", "free-standing")])

@@ -13,18 +13,14 @@ VAGUE = re.compile(
 )
 
 
-def list_sources() -> list[str]:
-    """Every text that says where a number comes from."""
-    return [
+def test_no_source_is_vague():
+    sources = [
         *(str(method.reference) for method in all_methods()),
         *(f"{one.reference} {one.remark}" for one in PROFILES.values()),
         *(str(rule.reference) for rule in RULES),
         *(str(one.source) for one in DENSITIES.values()),
         *(str(text) for one in DETAILS.values() for text in (one.what, one.weakness, one.source, one.fixing)),
     ]
-
-
-def test_no_source_is_vague():
-    assert len(list_sources()) > 20
-    assert not [one for one in list_sources() if VAGUE.search(one)]
+    assert len(sources) > 20
+    assert not [one for one in sources if VAGUE.search(one)]
     assert UNVERIFIED.startswith("assumed")

@@ -10,15 +10,13 @@ import pytest
 from shapely import Point, Polygon, box
 
 import assess
-from assess.report.content import Content
 from assess.report.embedded import Photos
 from assess.report.figures.labels import overlap
-from assess.report.figures.plan import Plan, build_plan
+from assess.report.figures.plan import Plan
 from assess.report.figures.underlay import cut_falls, find_edge, list_rooms
-from assess.report.figures.ways import build_stretches
 from tests.pictures import picture
 from tests.plans.drawings import PLAN_SVG
-from tests.report.reading import render
+from tests.report.reading import plans_of, render
 from tests.workbooks import UNVERIFIED, write_sheets
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -34,15 +32,7 @@ def _assess(folder: Path, pieces=(PIECE,), places=(), **floor):
     (folder / "p.png").write_bytes(picture("PNG", size=(1600, 1200)))
     (folder / "p.svg").write_bytes(PLAN_SVG)
     rows = {"Floors": [{"floor": "1", "pfa_x": 0.4, **floor}], "Items": pieces, "Places": places}
-    write_sheets(folder / "w.xlsx", rows)
-    return assess.run(assess.read_inventory(folder / "w.xlsx"), UNVERIFIED)
-
-
-def _plans(results) -> list[Plan]:
-    ways = build_stretches(results.route_tables)
-    pages = Content(results).floors
-    built = (build_plan(page, results, ways.get(page.floor.floor, ())) for page in pages)
-    return [plan for plan in built if plan is not None]
+    return assess.run(assess.read_inventory(write_sheets(folder / "w.xlsx", rows)), UNVERIFIED)
 
 
 def _drawing(results):
@@ -50,12 +40,9 @@ def _drawing(results):
     return ElementTree.fromstring(text)
 
 
-# ---------------------------------------------------------------- the user's drawing
-
-
-def test_a_picture_lies_where_its_numbers_put_it(tmp_path):
+def test_a_picture_and_a_drawing_lie_where_their_numbers_put_them_and_without_series_are_left_out(tmp_path):
     results = _assess(tmp_path, plan="p.png", **FRAME, plan_turn=30)
-    (plan,) = _plans(results)
+    (plan,) = plans_of(results)
     group = _drawing(results).find(f"{SVG}g[@class='underlay']")
     image = group.find(f"{SVG}image")
     assert image.get("href").startswith("data:image/jpeg;base64,")
@@ -68,11 +55,12 @@ def test_a_picture_lies_where_its_numbers_put_it(tmp_path):
     corners = plan.underlay.corners
     assert corners[1] == pytest.approx((16 * 3**0.5 / 2, 8))
     assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in corners)
-
-
-def test_a_drawing_is_lines_in_the_places_metres(tmp_path):
+    results = _assess(tmp_path, plan="p.png", **FRAME)
+    results.series.path.unlink()
+    (plan,) = plans_of(results)
+    assert plan.underlay is None
     results = _assess(tmp_path, plan="p.svg", **FRAME, plan_turn=90)
-    (plan,) = _plans(results)
+    (plan,) = plans_of(results)
     frame, wall = plan.underlay.lines
     np.testing.assert_allclose(wall, [(-12, 8), (-5, 8), (-5, 0)], atol=1e-5)
     np.testing.assert_allclose([frame.min(axis=0), frame.max(axis=0)], [(-12, 0), (0, 16)], atol=1e-5)
@@ -82,17 +70,14 @@ def test_a_drawing_is_lines_in_the_places_metres(tmp_path):
     assert path.get("fill") == "none"
 
 
-# ---------------------------------------------------------------- rooms and falls
-
-
 def _covered(plan: Plan):
     return [Polygon(ring) for piece in plan.pieces for ring in piece.fallen]
 
 
-def test_falls_end_at_the_outlines_but_not_at_inner_walls(tmp_path):
+def test_falls_end_at_outlines_or_the_frame_of_a_plan_not_at_inner_walls_and_else_stay_whole(tmp_path):
     pieces = [{**PIECE, "y": 3.0}, {**PIECE, "item": "A2", "x": 7.0, "y": 8.0}]
     results = _assess(tmp_path, pieces, ROOMS)
-    (plan,) = _plans(results)
+    (plan,) = plans_of(results)
     floor = box(0, 0, 16, 12)
     assert plan.cut_at == "outlines"
     assert all(floor.buffer(1e-6).covers(one) for one in _covered(plan))
@@ -100,19 +85,19 @@ def test_falls_end_at_the_outlines_but_not_at_inner_walls(tmp_path):
     assert areas == pytest.approx([1.6, 0.85 * 0.8, 1.6, 1.6])  # 0.85 m to the wall; through the wall at 7.8 m
     assert (plan.low, plan.high) == ((-0.4, -0.4), (16.4, 12.4))
     assert "Hatching ends at the outlines of the floor" in render(results)
-
-
-def test_falls_end_at_the_frame_of_a_plan_where_no_outlines_are_known(tmp_path):
     results = _assess(tmp_path, plan="p.png", **FRAME)
-    (plan,) = _plans(results)
+    (plan,) = plans_of(results)
     assert plan.cut_at == "frame"
     assert [one.area for one in _covered(plan)] == pytest.approx([1.6, 0.85 * 0.8])
     assert "Hatching ends at the frame of the plan." in render(results)
-    (plan,) = _plans(_assess(tmp_path, plan="p.png", **FRAME | {"plan_left": 5.0}))
+    (plan,) = plans_of(_assess(tmp_path, plan="p.png", **FRAME | {"plan_left": 5.0}))
     assert plan.cut_at == ""
+    (plan,) = plans_of(_assess(tmp_path, [PIECE, {**PIECE, "item": "A2", "x": 12.0}], ROOMS[:1]))
+    assert plan.cut_at == ""
+    assert [one.area for one in _covered(plan)] == pytest.approx([1.6] * 4)
 
 
-def test_a_hole_in_the_building_is_not_covered():
+def test_a_hole_in_the_building_is_not_covered_and_rooms_are_outlined_and_named_inside(tmp_path):
     ring = Polygon([(0, 0), (10, 0), (10, 10), (0, 10)], [[(4, 4), (6, 4), (6, 6), (4, 6)]])
     outer, inner = cut_falls([((3, 3), (7, 3), (7, 7), (3, 7))], ring)
     assert Polygon(outer).area == pytest.approx(16)
@@ -120,14 +105,11 @@ def test_a_hole_in_the_building_is_not_covered():
     assert Polygon(outer).exterior.is_ccw != Polygon(inner).exterior.is_ccw  # a hole by the rule of the path
     assert cut_falls([((20, 20), (21, 20), (21, 21))], ring) == ()
     assert find_edge((), (), [(1, 1)]) is None
-
-
-def test_rooms_are_outlined_and_named_inside(tmp_path):
     places = [*ROOMS, {"place": "Core", "floor": "1", "outline": "3 3; 5 3; 5 9; 3 9"},
               {"place": "Signed", "floor": "1", "x": 12, "y": 3, "kind": "room",
                "outline": "11 2; 13 2; 13 4; 11 4"}]  # fmt: skip
     results = _assess(tmp_path, [PIECE], places)
-    (plan,) = _plans(results)
+    (plan,) = plans_of(results)
     assert [room.name for room in plan.rooms] == ["East", "West", "Core", ""]
     west, core = Point(plan.rooms[1].centre), Point(plan.rooms[2].centre)
     assert box(0, 0, 7.8, 12).contains(west)
@@ -141,21 +123,14 @@ def test_rooms_are_outlined_and_named_inside(tmp_path):
     assert list_rooms(()) == ()
 
 
-# ---------------------------------------------------------------- names
-
-
-def _overlaps(plan: Plan) -> int:
-    return sum(overlap(one, other) > 0 for one, other in itertools.combinations(plan.boxes, 2))
-
-
 def test_names_without_room_have_a_number_and_a_key(tmp_path):
     places = [
         {"place": f"Meeting room number {n}", "floor": "1", "x": 4 + 0.05 * n, "y": 4.0, "kind": "room"}
         for n in range(40)
     ]
     results = _assess(tmp_path, [PIECE], places)
-    (plan,) = _plans(results)
-    assert _overlaps(plan) == 0
+    (plan,) = plans_of(results)
+    assert not [1 for one, other in itertools.combinations(plan.boxes, 2) if overlap(one, other) > 0]
     numbered = [key.number for key in plan.keys if key.number is not None]
     assert numbered == list(range(1, len(numbered) + 1))
     assert numbered
@@ -164,9 +139,6 @@ def test_names_without_room_have_a_number_and_a_key(tmp_path):
     assert len(plan.keys) + len([name for name in shown if name.startswith("Meeting")]) == 40
     html = render(results)
     assert f"<strong>1</strong> {plan.keys[0].name} (" in html
-
-
-# ---------------------------------------------------------------- photos
 
 
 def test_photos_by_item_and_no_more_than_a_report_holds(tmp_path):
@@ -184,16 +156,3 @@ def test_photos_by_item_and_no_more_than_a_report_holds(tmp_path):
     photos.left = 10
     assert photos.photo_of(1) == ""
     assert Photos(_assess(tmp_path, [PIECE])).photo_of(0) == ""
-
-
-def test_plans_without_their_series_are_left_out(tmp_path):
-    results = _assess(tmp_path, plan="p.png", **FRAME)
-    results.series.path.unlink()
-    (plan,) = _plans(results)
-    assert plan.underlay is None
-
-
-def test_falls_stay_whole_where_a_piece_stands_outside_every_outline(tmp_path):
-    (plan,) = _plans(_assess(tmp_path, [PIECE, {**PIECE, "item": "A2", "x": 12.0}], ROOMS[:1]))
-    assert plan.cut_at == ""
-    assert [one.area for one in _covered(plan)] == pytest.approx([1.6] * 4)

@@ -1,7 +1,6 @@
 """The Word edition: the client's report as headings, paragraphs, tables and pictures of Word."""
 
 import re
-import zipfile
 from importlib import util
 from threading import Event
 
@@ -18,7 +17,7 @@ from assess.report.pages.html import render
 from assess.report.report_options import ReportOptions
 from assess.settings import Settings
 from tests.cli.calling import run
-from tests.workbooks import assessed, write
+from tests.workbooks import assessed, parts_of, write
 
 ITEMS = [
     {"item": "A1", "floor": "1", "breadth": 30, "width": 90, "height": 190, "x": 1.0, "y": 2.0},
@@ -30,7 +29,6 @@ FLOORS = [{"floor": "1", "pfa_x": 0.4, "pfa_y": 0.3}, {"floor": "2", "pfa_x": 0.
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
-    """A report of three pieces, its page, and the document."""
     folder = tmp_path_factory.mktemp("word")
     results = assessed(folder / "w.xlsx", ITEMS, FLOORS, settings=Settings(verify="none", scale=1.5))
     with pytest.MonkeyPatch.context() as patch:
@@ -43,53 +41,37 @@ def written(tmp_path_factory):
     return files["docx"], html.fromstring(page).find("body"), docx.Document(str(files["docx"]))
 
 
-def _words(text):
-    return " ".join(text.split())
-
-
-def test_what_is_drawn_has_words(written):
+def test_what_is_drawn_has_words_every_page_its_condition_and_the_contents_lead_to_the_headings(written):
     path, *_, page, document = written
     pictures = [one.get("descr") for one in document.element.iter("{*}docPr")]
     assert len(pictures) == len(list(page.iter("svg"))) > 0
     assert any(text and "plan" in text.lower() for text in pictures)
-    with zipfile.ZipFile(path) as packed:
-        images = [packed.read(name) for name in packed.namelist() if name.startswith("word/media/")]
+    images = [data for name, data in parts_of(path).items() if name.startswith("word/media/")]
     assert images
     assert all(image.startswith(b"\x89PNG") and len(image) > 200 for image in images)
-
-
-def test_every_page_says_the_condition_and_its_number(written):
-    *_, document = written
     section = document.sections[0]
     assert section.header.paragraphs[0].text == "Every floor's motion times 1.5"
     fields = [one.get(f"{{{one.nsmap['w']}}}instr") for one in section.footer._element.iter("{*}fldSimple")]
     assert fields == ["PAGE", "NUMPAGES"]
-
-
-def test_the_contents_lead_to_the_headings(written):
-    *_, document = written
     targets = {one.get(f"{{{one.nsmap['w']}}}anchor") for one in document.element.iter("{*}hyperlink")}
     places = {one.get(f"{{{one.nsmap['w']}}}name") for one in document.element.iter("{*}bookmarkStart")}
     assert targets
     assert targets <= places
 
 
-def test_without_its_packages_it_says_what_to_install(monkeypatch, tmp_path):
-    find = util.find_spec
-    monkeypatch.setattr(util, "find_spec", lambda name, *rest: None if name == "docx" else find(name, *rest))
-    path = write(tmp_path / "w.xlsx", ITEMS, FLOORS)
-    done = run("run", str(path), "--verify", "none", "--formats", "docx", "--out", str(tmp_path / "out"))
-    assert done.exit_code == 2
-    said = _words(done.stderr)
-    assert f"docx needs python-docx, which is not installed. {say_install('word')}" in said
-    assert not (tmp_path / "out").exists()
-    with pytest.raises(InputError, match=re.escape("pip install '.[word]'")):
-        assess.write_reports(assess.run(assess.read_inventory(path), Settings(verify="none")), tmp_path, "docx")
-
-
-def test_a_cancelled_one_leaves_nothing(tmp_path):
+def test_a_cancelled_one_leaves_nothing_and_without_its_packages_it_says_what_to_install(tmp_path, monkeypatch):
     results, stop = assessed(tmp_path / "w.xlsx", ITEMS, FLOORS), Event()
     stop.set()
     with pytest.raises(CancelledError):
         assess.write_reports(results, tmp_path / "out", "docx", progress=Progress(cancel=stop))
     assert list((tmp_path / "out").glob("*")) == []
+    find = util.find_spec
+    monkeypatch.setattr(util, "find_spec", lambda name, *rest: None if name == "docx" else find(name, *rest))
+    path = write(tmp_path / "w.xlsx", ITEMS, FLOORS)
+    done = run("run", str(path), "--verify", "none", "--formats", "docx", "--out", str(tmp_path / "out"))
+    assert done.exit_code == 2
+    said = " ".join(done.stderr.split())
+    assert f"docx needs python-docx, which is not installed. {say_install('word')}" in said
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(InputError, match=re.escape("pip install '.[word]'")):
+        assess.write_reports(assess.run(assess.read_inventory(path), Settings(verify="none")), tmp_path, "docx")

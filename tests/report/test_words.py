@@ -21,13 +21,10 @@ def test_a_percentage_never_contradicts_its_class(value, text):
 @pytest.mark.parametrize(
     ("chance", "text"),
     [
-        ((0.03, 0.01, 0.085), "3.0 % (1.0\xa0to\xa08.5\xa0%)"),
-        ((0.03, None, None), "3.0 %"),
-        ((0.03,), "3.0 %"),
-        ((1.0, 0.99999, 1.0), "100.0 %"),
-        ((None, None, None), "–"),
+        ((0.03, 0.01, 0.085), "3.0 % (1.0\xa0to\xa08.5\xa0%)"), ((0.03, None, None), "3.0 %"), ((0.03,), "3.0 %"),
+        ((1.0, 0.99999, 1.0), "100.0 %"), ((None, None, None), "–"),
     ],
-)
+)  # fmt: skip
 def test_a_chance_has_its_interval_where_that_says_more(chance, text):
     assert words.say_chance(*chance) == text
 
@@ -49,16 +46,13 @@ def test_names_in_a_row_are_joined(names, runs):
     assert words.join_runs(names, 8) == runs
 
 
-def test_as_many_pieces_are_named_as_there_is_room_for():
+def test_as_many_pieces_are_named_as_there_is_room_for_and_percentages_hold_beside_every_limit():
     names = ["25-01", "25-02", "25-03", "25-07", "25-08", "25-09", "25-31"]
     assert words.fit_pieces(names, 40) == "25-01 to 25-03, 25-07 to 25-09, 25-31"
     assert words.fit_pieces(names, 28) == "25-01 to 25-03 and 4 more"
     assert words.fit_pieces(names, 10) == "25-01 to 25-03 and 4 more"  # one at least
     assert words.fit_pieces(["Bookcase by the window"], 10) == "Bookcase…"
     assert words.fit_pieces([], 10) == ""
-
-
-def test_that_holds_beside_every_limit():
     for limit in LIMITS:
         for power in range(1, 17):
             value = limit - 10.0**-power

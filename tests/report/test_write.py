@@ -49,27 +49,13 @@ def _run(path, out, *more, limit=None, patch=""):
     return _assess("run", path, "--verify", "none", "--out", out, *more, limit=limit, patch=patch)
 
 
-def test_an_unknown_format_is_refused(tmp_path):
+def test_an_unknown_format_and_a_folder_that_is_a_file_are_refused(tmp_path):
     with pytest.raises(assess.InputError, match="formats: 'odt' is unknown, expected some of: pdf, annex, xlsx"):
         assess.write_reports(assessed(tmp_path / "w.xlsx"), tmp_path / "out", ("odt",))
     assert not (tmp_path / "out").exists()
-
-
-def test_all_is_every_format_whose_packages_are_installed(monkeypatch):
-    assert list_formats(("all",)) == list(FILES)
-    missing = {"duckdb", "docx"}
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None if name in missing else name)
-    assert list_formats(("json", "all")) == [name for name in FILES if name not in ("docx", "parquet")]
-    assert list_formats(("docx",)) == ("docx",), "what is asked for by its name is missed"
-
-
-def test_a_folder_that_is_a_file_is_refused(tmp_path):
     (tmp_path / "out").write_text("x")
     with pytest.raises(assess.OutputError, match="cannot be written to"):
         assess.write_reports(assessed(tmp_path / "w.xlsx"), tmp_path / "out", ("json",))
-
-
-# ---------------------------------------------------------------- whose a file is
 
 
 @pytest.fixture(scope="module")
@@ -120,10 +106,14 @@ def test_what_is_in_the_way_is_named_before_the_run(tmp_path, results, name, mak
     check_folder(tmp_path / "other", ("html",))
 
 
-def test_the_command_names_it_before_it_reads_the_workbook(tmp_path):
+def test_the_command_names_what_is_in_the_way_first_and_a_list_leads_out_of_no_folder(tmp_path):
     (tmp_path / "out" / "report.html").mkdir(parents=True)
     text = error(run("run", tmp_path / "missing.xlsx", "--out", tmp_path / "out"))
     assert "report.html is a folder or a link" in text
+    listed = {"../mine.txt": None, "a/b": None, "..": None, "c:x": None, "report.html": "0" * 64}
+    text = json.dumps({"schema": "4.2", "assess": {"version": "1", "files": listed}}, indent=2)
+    (tmp_path / "results.json").write_text(text)
+    assert read_list(tmp_path / "results.json") == {"report.html": "0" * 64, "results.json": None}
 
 
 def test_a_file_of_the_users_that_is_not_in_the_way_stays(tmp_path, results):
@@ -211,16 +201,6 @@ def test_a_folder_without_results_is_unfinished(tmp_path):
 def test_results_of_another_program_list_nothing(tmp_path, text):
     (tmp_path / "results.json").write_text(text)
     assert read_list(tmp_path / "results.json") == {}
-
-
-def test_a_list_leads_out_of_no_folder(tmp_path):
-    listed = {"../mine.txt": None, "a/b": None, "..": None, "c:x": None, "report.html": "0" * 64}
-    text = json.dumps({"schema": "4.2", "assess": {"version": "1", "files": listed}}, indent=2)
-    (tmp_path / "results.json").write_text(text)
-    assert read_list(tmp_path / "results.json") == {"report.html": "0" * 64, "results.json": None}
-
-
-# ---------------------------------------------------------------- a full disk, a killed process
 
 
 @pytest.mark.slow
@@ -333,9 +313,14 @@ def test_an_interrupt_leaves_nothing_behind(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["new.xlsx"]
 
 
-def test_the_annex_is_written_where_it_is_asked_for():
+def test_the_annex_is_written_where_it_is_asked_for_and_all_is_every_format_whose_packages_are_installed(monkeypatch):
     assert "annex" not in DEFAULT
     assert {"docx", "npz", "parquet"} & set(DEFAULT) == set()
+    assert list_formats(("all",)) == list(FILES)
+    missing = {"duckdb", "docx"}
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None if name in missing else name)
+    assert list_formats(("json", "all")) == [name for name in FILES if name not in ("docx", "parquet")]
+    assert list_formats(("docx",)) == ("docx",), "what is asked for by its name is missed"
 
 
 @pytest.mark.slow

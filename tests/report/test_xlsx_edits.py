@@ -2,18 +2,16 @@
 
 import dataclasses
 import re
-import zipfile
 from typing import Any
 
-import formualizer
 import openpyxl
-import openpyxl.utils
 import pytest
+from openpyxl.utils.cell import coordinate_to_tuple
 
 import assess
 from assess.risk import RiskClass
-from tests.recalculate import libreoffice, needs_libreoffice, stored_cells, write_report
-from tests.workbooks import UNVERIFIED, assessed, write
+from tests.recalculate import evaluate, libreoffice, needs_libreoffice, stored_cells, write_report
+from tests.workbooks import UNVERIFIED, assessed, parts_of, write
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
@@ -50,7 +48,6 @@ def _cells(path, floor, item, limits):
 
 
 def _run(folder, floor, item):
-    """Assess the workbook with the same edit made in it."""
     floors, items = [dict(one) for one in FLOORS], [dict(one) for one in ITEMS]
     floors[EDITED_FLOOR] |= floor
     items[EDITED_ITEM] |= item
@@ -98,18 +95,10 @@ def _compare(found, expected):
 @pytest.mark.parametrize("edit", EDITS)
 def test_an_edit_gives_what_a_run_would(path, tmp_path, edit):
     floor, item, limits = EDITS[edit]
-    book = formualizer.load_workbook(str(path))
-    for (sheet, cell), value in _cells(path, floor, item, limits).items():
-        row, column = _split(cell)
-        book.set_value(sheet, row, column, value)
-    book.evaluate_all()
+    edits = _cells(path, floor, item, limits).items()
+    book = evaluate(path, ((sheet, *coordinate_to_tuple(cell), value) for (sheet, cell), value in edits))
     expected = _expected(_run(tmp_path, floor, item), limits)
-    _compare(_shown(lambda sheet, cell: book.get_value(sheet, *_split(cell)), path), expected)
-
-
-def _split(cell):
-    column, row = openpyxl.utils.cell.coordinate_from_string(cell)
-    return row, openpyxl.utils.column_index_from_string(column)
+    _compare(_shown(lambda sheet, cell: book.get_value(sheet, *coordinate_to_tuple(cell)), path), expected)
 
 
 @pytest.mark.libreoffice
@@ -125,12 +114,13 @@ def test_an_edit_gives_in_libreoffice_what_a_run_would(path, tmp_path):
     _compare(_shown(lambda sheet, cell: cells.get((sheet, cell)), path), expected)
 
 
-def test_every_chart_draws_cells_that_follow_an_edit(path):
+def test_every_chart_draws_cells_that_follow_an_edit_in_the_colours_of_the_classes_and_patterns(path):
     """What charts draw are formulas, or in Floors the cells to edit; and each tells in words what it shows."""
     book = openpyxl.load_workbook(path)
-    with zipfile.ZipFile(path) as archive:
-        charts = [archive.read(name).decode() for name in archive.namelist() if "charts/chart" in name]
-        drawings = [archive.read(name).decode() for name in archive.namelist() if "drawings/drawing" in name]
+    parts = {name: data.decode() for name, data in parts_of(path).items() if name.endswith(".xml")}
+    charts, drawings = (
+        [text for name, text in parts.items() if kind in name] for kind in ("charts/chart", "drawings/drawing")
+    )
     assert len(charts) == 4
     assert sum(text.count(' descr="') for text in drawings) == 4
     for chart in charts:
@@ -139,32 +129,18 @@ def test_every_chart_draws_cells_that_follow_an_edit(path):
         for sheet, area in areas:
             cells = [cell for row in book[sheet][area.replace("$", "")] for cell in row]
             assert all(cell.data_type == "f" or cell.fill.fgColor.rgb == "FFFFFBE6" for cell in cells), (sheet, area)
-            if any(_is_hidden(book[sheet], cell.column) for cell in cells):
+            if any(
+                any(one.hidden and one.min <= cell.column <= one.max for one in book[sheet].column_dimensions.values())
+                for cell in cells
+            ):
                 assert '<c:plotVisOnly val="1"/>' not in chart, "it would be empty"
-
-
-def _is_hidden(sheet, column):
-    return any(one.hidden and one.min <= column <= one.max for one in sheet.column_dimensions.values())
-
-
-def test_charts_have_the_colours_of_the_classes_and_patterns(path):
-    with zipfile.ZipFile(path) as archive:
-        text = "".join(archive.read(name).decode() for name in archive.namelist() if "charts/chart" in name)
+    text = "".join(charts)
     for risk in RiskClass:
         assert text.count(risk.fill.removeprefix("#").upper()) >= 3
     assert text.count("<a:pattFill") >= 6
 
 
 GROUND = {"period": 1.0, "ground_pga": 0.2, "ground_pgv": 12.0}
-
-
-@pytest.fixture(scope="module")
-def following(tmp_path_factory):
-    """A report whose floors have a PFA alone, along one axis; and its results."""
-    folder = tmp_path_factory.mktemp("following")
-    results = _run_following(folder, [0.3, 0.2, 0.03], 1.5)
-    write_report(results, folder / "r.xlsx")
-    return results, folder / "r.xlsx"
 
 
 def _run_following(folder, pfa, scale=1.0):
@@ -185,52 +161,39 @@ def _edit_pfa(path, pfa, out):
     return out
 
 
-def _show_velocities(read, path):
-    letters = {cell.value: cell.column_letter for cell in openpyxl.load_workbook(path)["Items"][1]}
-    velocities = [read("Floors", f"{column}{row}") for column in "DG" for row in (2, 3, 4)]
-    return velocities, [read("Items", f"{letters['Kaneko-Hayashi']}{row}") for row in range(2, 11)]
-
-
-def _expect_velocities(results):
-    velocities = [results.motions_of(str(at), axis)[0].pfv_cm_s for axis in "XY" for at in range(3)]
-    return velocities, [one.governing.methods["kaneko_hayashi"].value for one in results]
-
-
 EDITED = [0.06, 0.6, 0.09]
 """PFA to which the floors are edited, as scaled by 1.5."""
 
 
-def test_velocity_follows_an_edited_acceleration_as_in_a_run(following, tmp_path):
+def test_velocity_follows_an_edited_acceleration_as_in_a_run(tmp_path):
     """PGV/PGA 60 cm/s per g, T1 1 s, and an unknown height: PFV/PFA is 60 x 1.841/1.334 = 82.8 cm/s for each g."""
-    edited = _edit_pfa(following[1], EDITED, tmp_path / "edited.xlsx")
-    book = formualizer.load_workbook(str(edited))
-    book.evaluate_all()
-    found = _show_velocities(lambda sheet, cell: book.get_value(sheet, *_split(cell)), edited)
-    expected = _expect_velocities(_run_following(tmp_path, [one / 1.5 for one in EDITED], 1.5))
-    assert expected[0][:3] == pytest.approx([82.80 * one for one in EDITED], rel=1e-3)
-    assert found == tuple(pytest.approx(one, abs=1e-9) for one in expected)
+    write_report(_run_following(tmp_path, [0.3, 0.2, 0.03], 1.5), tmp_path / "r.xlsx")
+    edited = _edit_pfa(tmp_path / "r.xlsx", EDITED, tmp_path / "edited.xlsx")
+    book = evaluate(edited)
+    at = {cell.value: cell.column for cell in openpyxl.load_workbook(edited)["Items"][1]}["Kaneko-Hayashi"]
+    results = _run_following(tmp_path, [one / 1.5 for one in EDITED], 1.5)
+    velocities = [results.motions_of(str(floor), axis)[0].pfv_cm_s for axis in "XY" for floor in range(3)]
+    chances = [one.governing.methods["kaneko_hayashi"].value for one in results]
+    assert velocities[:3] == pytest.approx([82.80 * one for one in EDITED], rel=1e-3)
+    assert [book.get_value("Floors", row, column) for column in (4, 7) for row in (2, 3, 4)] == pytest.approx(
+        velocities, abs=1e-9
+    )
+    assert [book.get_value("Items", row, at) for row in range(2, 11)] == pytest.approx(chances, abs=1e-9)
 
 
-def test_the_velocity_of_a_floor_that_hardly_moves_follows_an_edit(tmp_path):
+def test_the_velocity_of_a_floor_that_hardly_moves_and_an_axis_that_borrows_its_motion_follow_an_edit(tmp_path):
     results = assessed(tmp_path / "w.xlsx", ITEMS[:1], [{"floor": "1", "pfa_x": 0.0001}], period=1.0)
     write_report(results, tmp_path / "r.xlsx")
-    book = formualizer.load_workbook(str(_edit_pfa(tmp_path / "r.xlsx", [0.5], tmp_path / "edited.xlsx")))
-    book.evaluate_all()
+    book = evaluate(_edit_pfa(tmp_path / "r.xlsx", [0.5], tmp_path / "edited.xlsx"))
     ratio = results.motions[0].pfv_cm_s / results.motions[0].pfa_g
     assert ratio == pytest.approx(105 * 1.816 / 1.535, rel=1e-3)
     assert book.get_value("Floors", 2, 4) == pytest.approx(0.5 * ratio, abs=1e-9)
-
-
-def test_an_axis_that_borrows_its_motion_follows_the_edit(tmp_path):
     items = [ITEMS[0] | {"axis": "X"}, ITEMS[1] | {"axis": "Y"}, ITEMS[2]]
     write_report(
         assessed(tmp_path / "w.xlsx", items, [{"floor": "1", "pfa_y": 0.9, "pfv_y": 12.0}]), tmp_path / "r.xlsx"
     )
     again = assessed(tmp_path / "edited.xlsx", items, [{"floor": "1", "pfa_y": 0.2, "pfv_y": 80.0}])
-    book = formualizer.load_workbook(str(tmp_path / "r.xlsx"))
-    book.set_value("Floors", 2, 6, 0.2)
-    book.set_value("Floors", 2, 7, 80.0)
-    book.evaluate_all()
+    book = evaluate(tmp_path / "r.xlsx", [("Floors", 2, 6, 0.2), ("Floors", 2, 7, 80.0)])
     at = {cell.value: cell.column for cell in openpyxl.load_workbook(tmp_path / "r.xlsx")["Items"][1]}
     for row, one in enumerate(again, 2):
         for label, key in (("OR", "proposed_or"), ("Kaneko-Hayashi", "kaneko_hayashi"), ("FEMA P-58", "fema_p58")):
@@ -239,10 +202,9 @@ def test_an_axis_that_borrows_its_motion_follows_the_edit(tmp_path):
 
 
 def test_a_size_that_is_no_number_shows_check_and_leaves_the_counts_alive(path):
-    book, sheets = formualizer.load_workbook(str(path)), openpyxl.load_workbook(path)
-    at = {cell.value: cell.column for cell in sheets["Items"][1]}
-    book.set_value("Items", 2, at["Breadth [cm]"], "abc")
-    book.evaluate_all()
+    sheets = openpyxl.load_workbook(path)
+    at: dict[Any, Any] = {cell.value: cell.column for cell in sheets["Items"][1]}
+    book = evaluate(path, [("Items", 2, at["Breadth [cm]"], "abc")])
     for label in ("B/H", "OR as printed", "OR", "Kaneko-Hayashi", "Class (formula)"):
         assert book.get_value("Items", 2, at[label]) == "check"
     top = next(cell.row for cell in sheets["Summary"]["A"] if cell.value == "Floor")

@@ -1,7 +1,6 @@
 """Sheets of the Excel report: what they are, how they are printed and read, with few rows, many floors, long texts."""
 
 import re
-import zipfile
 from collections.abc import Mapping
 from html import unescape
 from itertools import pairwise
@@ -23,7 +22,8 @@ from assess.settings import Settings
 from tests.nets.nets import find_shown
 from tests.recalculate import compare_formulas, libreoffice, needs_libreoffice, poison, same, stored_cells, write_report
 from tests.report.routed import DOUBTED, assess_routed
-from tests.workbooks import FLOORS, ITEMS, assessed
+from tests.workbook.books import read_part
+from tests.workbooks import FLOORS, ITEMS, assessed, parts_of
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
@@ -36,7 +36,7 @@ def _report(folder, *args, **named):
     return folder / "r.xlsx"
 
 
-def test_every_sheet_is_set_up_for_print(tmp_path):
+def test_every_sheet_is_set_up_for_print_and_a_title_cannot_change_the_header(tmp_path):
     book = openpyxl.load_workbook(_report(tmp_path, building="575 Market & Sons"))
     assert book.sheetnames == NAMES
     for sheet in book:
@@ -52,12 +52,8 @@ def test_every_sheet_is_set_up_for_print(tmp_path):
             assert sheet.freeze_panes in ({"Items": ("D2",), "Work list": ("C2",)}.get(sheet.title, ("A2", "B2")))
         if sheet.title not in ("Summary", "Assumptions"):
             assert sheet.auto_filter.ref
-
-
-def test_a_title_cannot_change_the_header(tmp_path):
     book = openpyxl.load_workbook(_report(tmp_path, building="&P 9 &R" + "long " * 60))
-    with zipfile.ZipFile(tmp_path / "r.xlsx") as archive:
-        text = archive.read(f"xl/worksheets/sheet{book.sheetnames.index('Items') + 1}.xml").decode()
+    text = read_part(tmp_path / "r.xlsx", f"xl/worksheets/sheet{book.sheetnames.index('Items') + 1}.xml")
     header = unescape(re.findall("<oddHeader>(.*?)</oddHeader>", text)[0])
     assert re.fullmatch(r"&L&8 &&P 9 &&Rlong (long )+.*…&R&8 Items", header)
     assert len(header) < 120
@@ -80,12 +76,8 @@ def test_items_show_bars_colours_and_choices(tmp_path):
     assert sheet.print_area.endswith(f"${heads['Basis']}$6")
     assert [heads[label] for label in ("Item", "Class", "Upper class", "Floor")] == list("ABCD")
     for label in ("Chance in an earthquake like this one", "Upper class", "Order: simulated"):
-        assert sheet.column_dimensions[heads[label]].hidden or _is_hidden(sheet, heads[label])
-
-
-def _is_hidden(sheet, letter):
-    at = openpyxl.utils.column_index_from_string(letter)
-    return any(one.hidden and one.min <= at <= one.max for one in sheet.column_dimensions.values())
+        at, own = openpyxl.utils.column_index_from_string(heads[label]), sheet.column_dimensions
+        assert own[heads[label]].hidden or any(one.hidden and one.min <= at <= one.max for one in own.values())
 
 
 @pytest.mark.parametrize("count", [0, 1])
@@ -102,8 +94,7 @@ def test_two_hundred_floors_stay_readable(tmp_path):
     floors = [{"floor": str(at), "name": f"Level {at}", "pfa_x": 0.2 + at / 400} for at in range(200)]
     items = [{"item": f"i{at}", "floor": str(at), "breadth": 30, "width": 80, "height": 150} for at in range(0, 200, 2)]
     path = _report(tmp_path, items, floors)
-    with zipfile.ZipFile(path) as archive:
-        charts = "".join(archive.read(name).decode() for name in archive.namelist() if "charts/chart" in name)
+    charts = "".join(data.decode() for name, data in parts_of(path).items() if "charts/chart" in name)
     assert int(re.findall(r'<c:tickLblSkip val="(\d+)"', charts)[0]) >= 2
     sheet = openpyxl.load_workbook(path)["Summary"]
     assert sheet.page_setup.fitToHeight == 0
@@ -111,7 +102,7 @@ def test_two_hundred_floors_stay_readable(tmp_path):
     assert compare_formulas(path) > 2000
 
 
-def test_long_names_are_whole_in_rows_that_grow(tmp_path):
+def test_long_names_are_whole_in_rows_that_grow_and_columns_hold_the_longest_word(tmp_path):
     items = [ITEMS[0] | {"description": LONG, "notes": "https://example.org"}, *ITEMS[1:]]
     book = openpyxl.load_workbook(_report(tmp_path, items))
     sheet = book["Items"]
@@ -122,6 +113,13 @@ def test_long_names_are_whole_in_rows_that_grow(tmp_path):
     assert 60 <= sheet.row_dimensions[2].height <= 90
     assert sheet.row_dimensions[3].height in (None, 15)
     assert [row[1:3] for row in book["Notes"].iter_rows(min_row=2, values_only=True)] == [("A1", "https://example.org")]
+    words = ("Electrocardiograph-1", "Mezzanine", "Gastroenterology", "Uninterruptible")
+    names = ("item", "floor", "room", "description")
+    items = [ITEMS[0] | dict(zip(names, words, strict=True))]
+    sheet = openpyxl.load_workbook(_report(tmp_path, items, [{"floor": "Mezzanine", "pfa_x": 0.5}]))["Items"]
+    letters = {cell.value: cell.column_letter for cell in sheet[1]}
+    for name, word in zip(names, words, strict=True):
+        assert sheet.column_dimensions[letters[name.capitalize()]].width > len(word.split("-")[0]), name
 
 
 def test_a_cancelled_report_leaves_nothing(tmp_path):
@@ -139,19 +137,6 @@ def test_a_cancelled_report_leaves_nothing(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["w.xlsx"]
 
 
-def test_columns_hold_the_longest_word(tmp_path):
-    words = ("Electrocardiograph-1", "Mezzanine", "Gastroenterology", "Uninterruptible")
-    names = ("item", "floor", "room", "description")
-    items = [ITEMS[0] | dict(zip(names, words, strict=True))]
-    sheet = openpyxl.load_workbook(_report(tmp_path, items, [{"floor": "Mezzanine", "pfa_x": 0.5}]))["Items"]
-    letters = {cell.value: cell.column_letter for cell in sheet[1]}
-    for name, word in zip(names, words, strict=True):
-        assert sheet.column_dimensions[letters[name.capitalize()]].width > len(word.split("-")[0]), name
-
-
-# ---------------------------------------------------------------- routes
-
-
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("routes")
@@ -164,7 +149,7 @@ def _colour(state):
     return f"FF{state.fill.removeprefix('#').upper()}"
 
 
-def test_states_have_sign_and_colour(written):
+def test_sheets_of_routes_are_set_up_and_states_have_sign_and_colour(written):
     results, book, _ = written
     for at, one in enumerate(results.route_tables.segments, 2):
         cell = book["Routes"].cell(at, 6)
@@ -173,10 +158,6 @@ def test_states_have_sign_and_colour(written):
     worst = max((one.state for one in results.route_tables.segments), key=lambda state: state.severity)
     assert worst in (RouteState.BLOCKED, RouteState.NOT_KNOWN)
     assert _colour(worst) in {cell.fill.fgColor.rgb for row in book["Routes"].iter_rows() for cell in row}
-
-
-def test_the_sheets_are_set_up(written):
-    _, book, _ = written
     for name, frozen, area in (("Routes", "C2", "A1:AF6"), ("Route pieces", "A2", "A1:P4"),
                                ("Route rooms", "B2", "A1:Z3")):  # fmt: skip
         sheet = book[name]
@@ -197,9 +178,6 @@ def test_no_text_is_a_formula(written):
             assert all(cell.data_type != "f" and cell.hyperlink is None for cell in row)
     assert book["Routes"]["AF2"].value == "=1+1"
     assert compare_formulas(path) > len(ITEMS)
-
-
-# ---------------------------------------------------------------- in another language
 
 
 class _Marked(Mapping[str, tuple[str, ...]]):
@@ -249,7 +227,7 @@ def test_libreoffice_agrees_in_another_language(verified, tmp_path):
     assert not [place for place, value in stored.items() if not same(value, found.get(place))]
 
 
-def test_names_of_sheets_hold_excels_rules():
+def test_names_of_sheets_hold_excels_rules_sentences_with_holes_are_expressions_and_headings_stay_apart():
     names = name_sheets({
         "a": "Qualità: log?", "b": "qualità  log", "c": "'x'", "d": "y" * 40, "e": "Y" * 40, "f": "[]",
     })  # fmt: skip
@@ -257,15 +235,9 @@ def test_names_of_sheets_hold_excels_rules():
         "a": "Qualità  log", "b": "qualità  log 2", "c": "x", "d": "y" * 31, "e": "Y" * 29 + " 2", "f": "f",
     }  # fmt: skip
     assert refer("L'arredo") == "'L''arredo'!"
-
-
-def test_a_sentence_with_holes_is_an_expression():
     assert literal('a "b"') == '"a ""b"""'
     assert sentence("{all} of {some}.", some="A1", all="B2") == 'B2&" of "&A1&"."'
-
-
-def test_headings_in_italian_stay_apart():
-    """Columns are told apart by their headings: two with the same translation would be one."""
+    # Columns are told apart by their headings: two with the same translation would be one.
     for name in ("everything-it", "italiano", "ospedale-san-carlo"):
         lines = find_shown(name, "xlsx").read_text(encoding="utf-8").splitlines()
         heads = [after for before, after in pairwise(lines) if before.startswith("# ") and after.startswith("1: A ")]

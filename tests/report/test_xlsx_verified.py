@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import formualizer
 import openpyxl
 import openpyxl.utils
 import pytest
@@ -16,7 +15,7 @@ from assess.report.xlsx.item_formulas import ANCHORED
 from assess.results import Results
 from assess.risk import RiskClass, classify
 from assess.settings import Settings
-from tests.recalculate import compare_formulas, write_report
+from tests.recalculate import compare_formulas, evaluate, write_report
 from tests.report.parallel import BASES, write_records
 from tests.workbooks import assessed, write
 
@@ -57,24 +56,16 @@ class Report:
 
     @property
     def rows(self):
-        """Row in the sheet, by item."""
         return {one.item.item: row for row, one in enumerate(self.results, 2)}
 
     def cell(self, item, label):
-        """Address of a cell of Items."""
         return "Items", self.rows[item], self.places[label]
 
     def edit(self, *edits):
         """Return the book as an engine computes it after cells (sheet, row, column) were given values."""
-        book = formualizer.load_workbook(str(self.path))
-        for place, value in edits:
-            sheet, row, column = place
-            book.set_value(sheet, row, column, value)
-        book.evaluate_all()
-        return book
+        return evaluate(self.path, ((*place, value) for place, value in edits))
 
     def read(self, book, label):
-        """Return what a column of Items shows, by item."""
         return {item: book.get_value("Items", row, self.places[label]) for item, row in self.rows.items()}
 
     def again(self, book):
@@ -90,7 +81,6 @@ class Report:
 
 
 def _report(folder, settings, items, floors, **building):
-    """Assess a workbook and write its report."""
     write_records(folder)
     results = assessed(folder / "w.xlsx", items, floors, settings=settings, **building)
     write_report(results, folder / "report.xlsx")
@@ -102,12 +92,6 @@ def _report(folder, settings, items, floors, **building):
 def report(tmp_path_factory):
     settings = Settings(verify="all", runs=30)
     return _report(tmp_path_factory.mktemp("verified"), settings, _items(), FLOORS, restitution=0.9)
-
-
-@pytest.fixture(scope="module")
-def by_formula(tmp_path_factory):
-    """The same workbook, of which nothing was simulated."""
-    return _report(tmp_path_factory.mktemp("by_formula"), Settings(verify="none"), _items(), FLOORS)
 
 
 def _copy(report, folder):
@@ -150,8 +134,15 @@ def _expected(report, again=(), edited=None):
     return shown, {floor: tuple(counts) for floor, counts in apart.items()}
 
 
-def test_stored_results_are_what_an_engine_computes(report, tmp_path):
+def test_stored_results_are_what_an_engine_computes_and_the_workings_are_hidden_and_stand_last(report, tmp_path):
     assert compare_formulas(_copy(report, tmp_path)) > 12 * len(_items())
+    book = openpyxl.load_workbook(report.path)
+    assert {sheet.oddHeader.center.text for sheet in book} == {None}, "no condition to be named"
+    sheet = book["Items"]
+    first = report.places["Breadth [cm] (as run)"]
+    assert sheet.column_dimensions[openpyxl.utils.get_column_letter(first)].hidden
+    assert first > report.places["Notes"]
+    assert sheet.auto_filter.ref.endswith(f"{openpyxl.utils.get_column_letter(max(report.places.values()))}21")
 
 
 EDITED = [
@@ -184,15 +175,21 @@ def test_an_edited_row_alone_is_to_be_run_again(report):
     assert any(line.startswith(f"Rows to be run again, as an input was edited: {len(edited)}.") for line in lines)
 
 
-def test_an_edit_taken_back_counts_again(report):
+def test_an_edit_taken_back_counts_again_and_an_edited_quantity_or_anchor_at_once(report):
     sheet = openpyxl.load_workbook(report.path)["Items"]
     places = [report.cell("2-11", label) for label in ("Breadth [cm]", "Friction", "Axis given")]
     edits = [(place, 0.25) for place in places]
     assert report.again(report.edit(*edits)) == {"2-11"}
     assert not report.again(report.edit(*edits, *((place, sheet.cell(*place[1:]).value) for place in places)))
+    items = _items()
+    items[2]["quantity"], items[4]["anchored"] = 50, "yes"
+    book = report.edit((report.cell("1-2", "Quantity"), 50), (report.cell("1-4", "Anchored"), "yes"))
+    assert not report.again(book)
+    assert _summary(report, book) == _expected(report, set(), items) != _expected(report)
+    assert report.read(book, "Class")["1-4"].startswith(ANCHORED)
 
 
-def test_an_edited_peak_asks_for_a_run_of_the_rows_that_shake_along_it(report):
+def test_an_edited_peak_or_velocity_or_a_borrowed_one_asks_for_a_run_of_the_rows_that_shake_along_it(report):
     x, y = ("Floors", 3, 3), ("Floors", 3, 6)
     assert report.again(report.edit((x, 0.9))) == report.named("2", "", "X")
     assert report.again(report.edit((y, 0.9))) == report.named("2", "", "Y")
@@ -200,16 +197,14 @@ def test_an_edited_peak_asks_for_a_run_of_the_rows_that_shake_along_it(report):
     assert report.again(book) == report.named("2", "", "X", "Y")
     assert [book.get_value("Floors", row, column) for row in (2, 3) for column in (10, 11)] == ["", "", *["edited"] * 2]
     assert {floor: counts[2] for floor, counts in _summary(report, book)[1].items()} == {"1": 10, "2": 13, "3": 2}
-
-
-def test_an_edited_velocity_or_a_peak_that_is_borrowed_asks_for_a_run(report):
     assert report.again(report.edit((("Floors", 2, 4), 60.0))) == report.named("1", "", "X")
     assert report.again(report.edit((("Floors", 4, 4), 60.0))) == report.named("3", "", "Y")  # none was given
     assert report.again(report.edit((("Floors", 4, 3), 0.6))) == report.named("3", "", "Y")
 
 
-def test_a_row_that_was_not_simulated_follows_by_the_formula(by_formula):
+def test_a_row_that_was_not_simulated_follows_by_the_formula(tmp_path):
     """So does whether it can rock: a stocky piece that is made slender gets the formula's class, and back."""
+    by_formula = _report(tmp_path, Settings(verify="none"), _items(), FLOORS)
     stocky = next(one.item.item for one in by_formula.results if not one.adopted.can_rock)
     assert by_formula.read(by_formula.edit(), "Class")[stocky] == "○ low"
     assert by_formula.read(by_formula.edit(), "Basis")[stocky] == "cannot rock"
@@ -222,15 +217,6 @@ def test_a_row_that_was_not_simulated_follows_by_the_formula(by_formula):
     assert by_formula.read(outside, "Class")[stocky] == "■ very high*"
     assert by_formula.read(book, "Basis")[stocky] == "formula (not simulated)"
     assert by_formula.read(by_formula.edit((breadth, 20), (breadth, 155)), "Class")[stocky] == "○ low"
-
-
-def test_an_edited_quantity_or_anchor_counts_at_once(report):
-    items = _items()
-    items[2]["quantity"], items[4]["anchored"] = 50, "yes"
-    book = report.edit((report.cell("1-2", "Quantity"), 50), (report.cell("1-4", "Anchored"), "yes"))
-    assert not report.again(book)
-    assert _summary(report, book) == _expected(report, set(), items) != _expected(report)
-    assert report.read(book, "Class")["1-4"].startswith(ANCHORED)
 
 
 def test_an_edited_class_limit_reclasses_simulated_rows(tmp_path):
@@ -304,16 +290,6 @@ def test_a_suite_and_parallel_records_hold_too(tmp_path):
     assert [row[:2] for row in rows] == served
     assert {row[4:8] for row in rows} == {("suite own, scaled", 2, None, None)}
     assert compare_formulas(tmp_path / "report.xlsx") > 12 * len(_items())
-
-
-def test_the_workings_are_hidden_and_stand_last(report):
-    book = openpyxl.load_workbook(report.path)
-    assert {sheet.oddHeader.center.text for sheet in book} == {None}, "no condition to be named"
-    sheet = book["Items"]
-    first = report.places["Breadth [cm] (as run)"]
-    assert sheet.column_dimensions[openpyxl.utils.get_column_letter(first)].hidden
-    assert first > report.places["Notes"]
-    assert sheet.auto_filter.ref.endswith(f"{openpyxl.utils.get_column_letter(max(report.places.values()))}21")
 
 
 @pytest.mark.slow

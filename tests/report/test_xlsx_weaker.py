@@ -40,18 +40,14 @@ DECIDED = {f"{floor}-{kind}{at}" for floor in "12" for kind in "bs" for at, (wor
 
 @dataclass(frozen=True)
 class Book:
-    """A run and its Excel report."""
-
     results: Results
     path: Path
 
     @property
     def letters(self) -> dict[str, str]:
-        """Columns of Items by key."""
         return {one.key: openpyxl.utils.get_column_letter(at) for at, one in enumerate(item_columns(self.results), 1)}
 
     def cell(self, item: str, key: str) -> tuple[str, str]:
-        """Sheet and cell of a value of Items."""
         row = next(at for at, one in enumerate(self.results, 2) if one.item.item == item)
         return "Items", f"{self.letters[key]}{row}"
 
@@ -74,7 +70,6 @@ class Book:
         return [("Floors", f"{column}{first}", other["CD".index(column)] / 2)]
 
     def items(self, cells: Cells) -> dict[str, dict[str, Any]]:
-        """Return the rows of Items by item."""
         return {one["item"]: one for one in read_items(cells, self.results)}
 
     def counts(self, cells: Cells) -> dict[tuple[str, int], tuple[list[int], list[int]]]:
@@ -126,7 +121,7 @@ def book(request, books):
 
 
 @pytest.mark.slow
-def test_weaker_floors_raise_no_count_and_no_class(book):
+def test_weaker_floors_raise_no_count_and_no_class_and_stronger_ones_lower_none_of_a_row_that_follows(book):
     """Of each class and above: of a class alone there may be more, as those of higher classes fall into it."""
     edits = book.scaled(0.7)
     assert len(edits) >= len(book.results.floor_rows)
@@ -140,6 +135,13 @@ def test_weaker_floors_raise_no_count_and_no_class(book):
     rows = book.items(cells)
     for item, row in book.items(stored).items():
         assert _rank(rows[item]["class"]) <= _rank(row["class"]), item
+    _check_waiting(book, rows, cells)
+    stored = stored_cells(book.path)
+    cells = recalculate(book.path, book.scaled(1.5))
+    rows = book.items(cells)
+    for item, row in book.items(stored).items():
+        if rows[item]["class"] != AGAIN:
+            assert _rank(rows[item]["class"]) >= _rank(row["class"]), item
     _check_waiting(book, rows, cells)
 
 
@@ -159,20 +161,6 @@ def _check_waiting(book: Book, rows: dict[str, dict[str, Any]], cells: Cells) ->
 
 
 @pytest.mark.slow
-def test_stronger_floors_lower_no_class_of_a_row_that_follows(book):
-    stored = stored_cells(book.path)
-    cells = recalculate(book.path, book.scaled(1.5))
-    rows = book.items(cells)
-    for item, row in book.items(stored).items():
-        if rows[item]["class"] != AGAIN:
-            assert _rank(rows[item]["class"]) >= _rank(row["class"]), item
-    _check_waiting(book, rows, cells)
-
-
-# ---------------------------------------------------------------- brackets
-
-
-@pytest.mark.slow
 def test_what_counts_as_anchored_is_what_the_bracket_says(books):
     for one in map(books, ("by_formula", "simulated")):
         rows = one.items(stored_cells(one.path))
@@ -183,13 +171,6 @@ def test_what_counts_as_anchored_is_what_the_bracket_says(books):
                 expected = [by_weight if held is None else held for held in HELD[kind]]
                 assert [row["held"] == "yes" for row in shown] == expected
                 assert [row["class"].startswith(ANCHORED) for row in shown] == expected
-
-
-def _count(book: Book, cells: Cells) -> list[int]:
-    """Return the pieces of the building that have a class, that are to be run again, and that are anchored."""
-    counts = list(book.counts(cells).values())
-    apart = [others for _, others in counts if isinstance(others[0], int | float)]  # of the first table alone
-    return [sum(classes[0] for classes, _ in counts), *(sum(others[at] for others in apart) for at in (0, 1))]
 
 
 YES, NO, PARTLY = 0, 6, 3
@@ -215,8 +196,9 @@ SINGLE: dict[str, tuple[int, str, Any, str]] = {
 @pytest.mark.parametrize("kind", ["by_formula", "simulated"])
 @pytest.mark.slow
 def test_edited_anchors_and_brackets(kind, books):
-    """As many edits at once as there are rows of the kind: one on each floor."""
+    """As many edits at once as there are rows of the kind: one on each floor. Rows and counts follow."""
     one, left = books(kind), list(SINGLE.values())
+    as_run = one.items(stored_cells(one.path))
     while left:
         edits, expected = [], {}
         for edit in tuple(left):
@@ -226,21 +208,17 @@ def test_edited_anchors_and_brackets(kind, books):
                 edits.append((*one.cell(item, key), value))
                 expected[item] = state
                 left.remove(edit)
-        _check_single(one, recalculate(one.path, edits), expected)
-
-
-def _check_single(book: Book, cells: Cells, expected: dict[str, str]) -> None:
-    """Hold edited rows, and the counts, against what is expected of each: held, free or again."""
-    as_run = book.items(stored_cells(book.path))
-    rows, wanted = book.items(cells), {item: _state(row) for item, row in as_run.items()} | expected
-    assert {item: _state(row) for item, row in rows.items()} == wanted
-    quantities = {item: row["quantity"] for item, row in rows.items()}
-    states = ("free", "again", "held")
-    sums = [sum(quantities[item] for item, state in wanted.items() if state == one) for one in states]
-    assert _count(book, cells) == sums
-    for item, state in expected.items():
-        if state != "again":
-            assert rows[item]["class"].removeprefix(ANCHORED) == as_run[item]["class"].removeprefix(ANCHORED)
+        cells = recalculate(one.path, edits)
+        rows, wanted = one.items(cells), {item: _state(row) for item, row in as_run.items()} | expected
+        assert {item: _state(row) for item, row in rows.items()} == wanted
+        sums = [sum(rows[item]["quantity"] for item, own in wanted.items() if own == state)
+                for state in ("free", "again", "held")]  # fmt: skip
+        counts = list(one.counts(cells).values())
+        apart = [others for _, others in counts if isinstance(others[0], int | float)]  # of the first table alone
+        assert [sum(classes[0] for classes, _ in counts), *(sum(own[at] for own in apart) for at in (0, 1))] == sums
+        for item, state in expected.items():
+            if state != "again":
+                assert rows[item]["class"].removeprefix(ANCHORED) == as_run[item]["class"].removeprefix(ANCHORED)
 
 
 def _state(row: dict[str, Any]) -> str:

@@ -56,7 +56,9 @@ def page(browser):
             found = context.new_page()
             found.errors = []
             found.on("pageerror", lambda error: found.errors.append(str(error)))
-            found.on("console", lambda said: found.errors.append(said.text) if _is_fault(said) else None)
+            # an error of the page: a script, the policy; not the status of an answer
+            found.on("console", lambda said: found.errors.append(said.text)
+                     if said.type == "error" and "Failed to load resource" not in said.text else None)  # fmt: skip
             opened.append(found)
             if server.entered is None:
                 found.goto(server.url)
@@ -74,6 +76,9 @@ def page(browser):
     assert faults == []
 
 
-def _is_fault(said):
-    """Whether a line of the console is an error of the page: a script, the policy; not the status of an answer."""
-    return said.type == "error" and "Failed to load resource" not in said.text
+@pytest.fixture
+def small(page, served_here, tmp_path):
+    from tests.web.opened import write_office
+    from tests.web.sheet_page import opened
+
+    return opened(page, served_here(write_office(tmp_path / "office.xlsx"))).open("Items")

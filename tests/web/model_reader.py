@@ -42,7 +42,6 @@ def hold_reader(server):
 
 
 def is_gone(pid):
-    """Whether a process has ended."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().split(")")[1].split()[0] == "Z"
     except FileNotFoundError:

@@ -42,7 +42,6 @@ def write_template(path: Path, rows, units: Units = "si", spare: int = 3) -> Pat
 
 
 def write_office(path: Path, items=None, floors=None, **building) -> Path:
-    """Write the small workbook as users have it."""
     return write_template(path, {"Building": [building], "Floors": floors or FLOORS, "Items": items or ITEMS})
 
 

@@ -32,8 +32,6 @@ def write_floor(path, units="si", items=ITEMS, floors=FLOORS, places=PLACES, rou
 
 
 class PlanPage:
-    """A page that shows the plan."""
-
     def __init__(self, sheet):
         self.sheet, self.page, self.server = sheet, sheet.page, sheet.server
         self.keyboard, self.mouse = sheet.page.keyboard, sheet.page.mouse
@@ -108,5 +106,4 @@ class PlanPage:
 
 
 def opened_plan(page, server, **options):
-    """Open the page of a server at its plan."""
     return PlanPage(opened(page, server, **options)).open()

@@ -24,8 +24,6 @@ ADDRESS = re.compile(r"https?://\S+")
 
 @dataclass
 class Reply:
-    """An answer of the server."""
-
     status: int
     headers: http.client.HTTPMessage
     data: bytes
@@ -62,7 +60,6 @@ class Client:
         return self.request("POST", path, json.dumps(body or {}), headers)
 
     def send(self, path, name, data):
-        """Send a file."""
         return self.request("POST", f"{path}?name={quote(name)}", data)
 
 
@@ -167,5 +164,4 @@ def list_named(folder, start):
 
 
 def wait_for_job(client):
-    """Return the job once it has ended."""
     return wait_until(lambda: client.get("/api/job").json()["job"], lambda job: job["state"] != "running")

@@ -49,7 +49,6 @@ class SheetPage:
         self.options = page.locator(".grid-choices [role=option]")
 
     def open(self, name):
-        """Show a sheet by its English name."""
         self.page.locator(f".sheet-tabs [data-sheet={name}]").click()
         return self
 

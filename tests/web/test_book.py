@@ -2,7 +2,6 @@
 
 import io
 import re
-import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -17,7 +16,7 @@ from assess.workbook.read import read_inventory
 from assess.workbook.schema import LIVE
 from assess.workbook.template import Content, write_workbook
 from tests.workbook.books import change_parts, replace, write_shared
-from tests.workbooks import FLOORS, ITEMS
+from tests.workbooks import FLOORS, ITEMS, parts_of
 
 ROWS = {"Building": [{"building": "Hall", "ground_pga": 0.2, "period": 0.8}], "Floors": FLOORS, "Items": ITEMS}
 ITEMS_PART = "xl/worksheets/sheet4.xml"
@@ -25,7 +24,6 @@ ITEMS_PART = "xl/worksheets/sheet4.xml"
 
 @pytest.fixture(scope="module")
 def filled(tmp_path_factory):
-    """The bytes of a small workbook with live formulas and their results."""
     path = tmp_path_factory.mktemp("filled") / "office.xlsx"
     write_workbook(path, with_live(Content(ROWS)), spare=3)
     return path.read_bytes()
@@ -37,7 +35,6 @@ def book(filled, tmp_path):
 
 
 def at(field, sheet="Items"):
-    """The column of a field, from 0."""
     return PLACES[sheet, field]
 
 
@@ -49,11 +46,6 @@ def stored(data, sheet="Items"):
     """What the cells of a sheet store, by address; of formulas their results."""
     page = openpyxl.load_workbook(io.BytesIO(data), data_only=True)[sheet]
     return {cell.coordinate: cell.value for row in page.iter_rows() for cell in row if cell.value is not None}
-
-
-def parts_of(data):
-    with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        return {name: archive.read(name) for name in archive.namelist()}
 
 
 def cells_of(part):
@@ -70,9 +62,6 @@ def refusals(book, *edits):
     assert book.state() == before
     assert book.snapshot().workbook is cells
     return {tuple(one[:3]): one[3] for one in caught.value.refused}
-
-
-# ---------------------------------------------------------------- bytes
 
 
 def test_without_a_difference_the_very_bytes(book, filled):
@@ -144,32 +133,22 @@ def test_what_is_held_is_what_is_written(book, tmp_path):
     assert any(item.row == 300 for item in held.items)
 
 
-# ---------------------------------------------------------------- typed texts
-
-
 TYPED: dict[str, list[tuple[Any, Any]]] = {
     "breadth": [("45 cm", 45), ("1,80 m", 180), ("45,5", 45.5), ("18 in", 45.72), ("1'4\"", 40.64),
                 ("5 11/16", "5 11/16"), ("wide", "wide"), (True, True), (" ", None), ("", None)],
-    "anchored": [("Y", "yes"), ("YES", "YES"), ("maybe", "maybe"), (True, "yes")],
-    "axis": [("x", "x")],
+    "anchored": [("Y", "yes"), ("YES", "YES"), ("maybe", "maybe"), (True, "yes")], "axis": [("x", "x")],
     "item": [("  A  9 ", "A 9"), ("007", "007"), (7, 7)],
-    "description": [("  as typed ", "  as typed "), ("=1+1", "=1+1"), ("1,8 m", "1,8 m")],
-    "quantity": [("2", 2)],
-    "friction": [("0,35", 0.35)],
-    "height": [("1.234", "1.234")],
-    "notes": [("12", "12")],
+    "description": [("  as typed ", "  as typed "), ("=1+1", "=1+1"), ("1,8 m", "1,8 m")], "quantity": [("2", 2)],
+    "friction": [("0,35", 0.35)], "height": [("1.234", "1.234")], "notes": [("12", "12")],
 }  # fmt: skip
 
 
-def test_texts_are_taken_as_their_column_asks(book):
+def test_texts_are_taken_as_their_column_asks_and_in_columns_of_the_user(book, tmp_path):
     for field, cases in TYPED.items():
         for typed, kept in cases:
             found = edit(book, ("Items", 2, at(field), typed))["cells"]
             assert found == [["Items", 2, at(field), kept]], (field, typed)
             assert type(found[0][3]) is type(kept), (field, typed)
-
-
-def test_columns_of_the_user(tmp_path):
     path = write_shared(tmp_path / "own.xlsx", {"Items": [["Item", "Floor", "Mine"], ["A1", "1", "mine"]]})
     book = Book.open_disk(path)
     same = ("007", "1e5", "1,5", "nan", "٣", 3.5, "x", True)
@@ -178,10 +157,7 @@ def test_columns_of_the_user(tmp_path):
         assert stored(book.write())["C2"] == kept
 
 
-# ---------------------------------------------------------------- what is refused
-
-
-def test_cells_that_cannot_be_edited(book):
+def test_cells_that_cannot_be_edited_formulas_in_place_of_values_and_what_is_no_edit(book):
     good = ("Items", 2, at("breadth"), 50)
     found = refusals(
         book, good, ("Items", 1, 0, "Name"), ("Items", 2, at("B/H"), 1), ("Items", 100_001, 0, "x"),
@@ -193,22 +169,23 @@ def test_cells_that_cannot_be_edited(book):
     assert len(found) == 16
     assert tuple(good[:3]) not in found
     assert all(found.values())
-
-
-def test_typed_formulas_are_refused_where_a_value_belongs(book):
-    """As a text they would stand there as a wrong number, or as no date."""
+    # As a text they would stand there as a wrong number, or as no date.
     fields = [
-        ("Items", 2, "quantity"),
-        ("Items", 2, "breadth"),
-        ("Items", 3, "anchored"),
-        ("Building", 0, "report_date"),
-    ]
+        ("Items", 2, "quantity"), ("Items", 2, "breadth"), ("Items", 3, "anchored"), ("Building", 0, "report_date"),
+    ]  # fmt: skip
     places = [(sheet, *book.sheets[sheet].place(field, row)) for sheet, row, field in fields]
     found = refusals(book, *((*place, " =1+40") for place in places), ("Items", 2, at("notes"), "=1+40"))
     assert found == dict.fromkeys(places, "formulas are not computed here: type the value.")
+    cells: list[Any] = [["Items", 2, 0], ["Items", "2", 0, 1], ["Items", 2.0, 0, 1], ["Items", True, 0, 1]]
+    cells += [[None, 2, 0, 1], ["Items", 2, 0, [1]], ["Items", 2, 0, {"a": 1}], ["Items", 2, None, 1]]
+    wrong: list[Any] = [None, {}, "x", [1], *([one] for one in cells)]
+    for edits in wrong:
+        with pytest.raises(InputError, match=r"edits? ha(s|ve) to be a list"):
+            book.edit(book.version, edits, "x")
+    assert book.version == 1
 
 
-def test_formulas_merges_arrays_and_tables(tmp_path):
+def test_formulas_merges_arrays_and_a_workbook_that_cannot_be_changed_at_all(tmp_path, filled):
     """What a change of the bytes would refuse is refused as it is typed."""
     rows: list[list[Any]] = [["Item", "Floor", "Mine", "Sum"], *([f"A{at}", "1", 1, 2] for at in range(1, 5))]
     path = write_shared(tmp_path / "own.xlsx", {"Items": rows})
@@ -226,24 +203,11 @@ def test_formulas_merges_arrays_and_tables(tmp_path):
     assert {cell[1:] for cell in found} == {(2, 3), (3, 3), (4, 3), (5, 1), (4, 2)}
     edit(book, ("Items", 5, 0, "first of the merged"), ("Items", 5, 3, 8))
     assert stored(book.write())["D5"] == 8
-
-
-def test_a_workbook_that_cannot_be_changed_at_all(tmp_path, filled):
     path = tmp_path / "signed.xlsx"
     path.write_bytes(filled)
     book = Book.open_disk(change_parts(path, {"_xmlsignatures/sig1.xml": b"<a/>"}))
     assert "signature" in refusals(book, ("Items", 2, at("breadth"), 50))["Items", 2, at("breadth")]
     assert book.write() == path.read_bytes()
-
-
-def test_what_is_no_edit(book):
-    cells: list[Any] = [["Items", 2, 0], ["Items", "2", 0, 1], ["Items", 2.0, 0, 1], ["Items", True, 0, 1]]
-    cells += [[None, 2, 0, 1], ["Items", 2, 0, [1]], ["Items", 2, 0, {"a": 1}], ["Items", 2, None, 1]]
-    wrong: list[Any] = [None, {}, "x", [1], *([one] for one in cells)]
-    for edits in wrong:
-        with pytest.raises(InputError, match=r"edits? ha(s|ve) to be a list"):
-            book.edit(book.version, edits, "x")
-    assert book.version == 1
 
 
 def test_hostile_texts_stay_texts(book, tmp_path):
@@ -264,9 +228,6 @@ def test_hostile_texts_stay_texts(book, tmp_path):
     held = book.snapshot().workbook.sheets["Items"]
     places = [(10 + row, at("description")) for row in range(len(texts))]
     assert [again.value(place) for place in places] == [held.value(place) for place in places]
-
-
-# ---------------------------------------------------------------- history, versions
 
 
 def test_undo_and_redo_across_sheets(book):

@@ -11,6 +11,7 @@ from assess.web.columns import show
 from assess.workbook.open import UNSAVED, Percent
 from assess.workbook.read import read_inventory
 from assess.workbook.template import Content, write_workbook
+from tests.web.opened import write_template
 from tests.workbook.books import write_shared
 from tests.workbooks import FLOORS, ITEMS
 
@@ -100,8 +101,7 @@ def test_a_date_in_a_cell(tmp_path):
 def test_an_imperial_workbook_round_trips(tmp_path):
     floors = [{"floor": "1", "pfa_x": 0.3, "elevation": 10}]
     items = [{"item": "A1", "floor": "1", "breadth": 16, "height": 72, "x": 3}]
-    write_workbook(tmp_path / "book.xlsx", Content({"Floors": floors, "Items": items}), "imperial", spare=3)
-    book = Book.open_disk(tmp_path / "book.xlsx")
+    book = Book.open_disk(write_template(tmp_path / "book.xlsx", {"Floors": floors, "Items": items}, "imperial"))
     found, sheets = describe(book)
     assert found["units"] == "imperial"
     height, x = columns(sheets["Items"])["height"], columns(sheets["Items"])["x"]

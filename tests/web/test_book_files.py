@@ -10,8 +10,8 @@ from assess.errors import InputError, OutputError, WorkbookError
 from assess.web.book import Book, ChangedOutsideError
 from assess.workbook.lists import PLACES
 from assess.workbook.read import read_inventory
-from assess.workbook.template import Content, write_workbook
 from tests.pictures import picture
+from tests.web.opened import write_template
 
 HEIGHT = PLACES["Items", "height"]
 ROWS = {
@@ -28,35 +28,17 @@ PLAIN = {
 RECORD = Path(__file__).parents[2] / "inventories" / "records" / "575-market" / "891018_1.cra-1.0210a.smc"
 
 
-@pytest.fixture(scope="module")
-def filled(tmp_path_factory):
-    """A workbook that names no files."""
-    path = tmp_path_factory.mktemp("filled") / "office.xlsx"
-    write_workbook(path, Content(PLAIN), spare=3)
-    return path.read_bytes()
-
-
-@pytest.fixture(scope="module")
-def naming(tmp_path_factory):
-    """A workbook that names files."""
-    path = tmp_path_factory.mktemp("naming") / "office.xlsx"
-    write_workbook(path, Content(ROWS), spare=3)
-    return path.read_bytes()
-
-
 @pytest.fixture
-def path(filled, tmp_path):
-    """A workbook in a folder of its own."""
+def path(tmp_path):
+    """A workbook that names no files, in a folder of its own."""
     (tmp_path / "own").mkdir()
-    (tmp_path / "own" / "office.xlsx").write_bytes(filled)
-    return tmp_path / "own" / "office.xlsx"
+    return write_template(tmp_path / "own" / "office.xlsx", PLAIN)
 
 
 @pytest.fixture
-def named(path, naming):
+def named(path):
     """One that names files, which are missing."""
-    path.write_bytes(naming)
-    return path
+    return write_template(path, ROWS)
 
 
 def set_height(book, value, row=2):
@@ -67,12 +49,9 @@ def heights(path):
     return [item.height for item in read_inventory(path, strict=False).items]
 
 
-# ---------------------------------------------------------------- saving
-
-
-def test_a_save_replaces_the_file_and_can_be_undone(path, filled):
+def test_a_save_replaces_the_file_and_can_be_undone(path):
     path.chmod(0o640)
-    book = Book.open_disk(path)
+    filled, book = path.read_bytes(), Book.open_disk(path)
     set_height(book, 150)
     assert book.state()["unsaved"]
     assert path.read_bytes() == filled
@@ -111,7 +90,7 @@ def test_a_save_keeps_owner_group_and_attributes(path):
     assert after.st_mtime_ns > before.st_mtime_ns
 
 
-def test_nothing_to_save_writes_nothing(path):
+def test_nothing_to_save_writes_nothing_and_edits_while_it_is_saved_are_not_lost(path):
     before = path.stat()
     book = Book.open_disk(path)
     book.save()
@@ -119,10 +98,7 @@ def test_nothing_to_save_writes_nothing(path):
     book.undo(book.version)
     book.save()
     assert (path.stat().st_mtime_ns, path.stat().st_ino) == (before.st_mtime_ns, before.st_ino)
-
-
-def test_edits_while_it_is_saved_are_not_lost(path):
-    """Three that save and one that edits: what is edited is in the file, or counts as unsaved."""
+    # Three that save and one that edits: what is edited is in the file, or counts as unsaved.
     book = Book.open_disk(path)
     with ThreadPoolExecutor(3) as pool:
         savers = []
@@ -154,8 +130,8 @@ def test_a_link_stays_its_file_is_replaced_and_what_a_killed_save_left_is_remove
     assert [one.name for one in path.parent.iterdir()] == ["office.xlsx"]
 
 
-def test_a_file_that_was_changed_outside_is_left(path, filled):
-    book = Book.open_disk(path)
+def test_a_file_that_was_changed_outside_is_left(path):
+    filled, book = path.read_bytes(), Book.open_disk(path)
     set_height(book, 150)
     os.utime(path, ns=(1, 1))
     assert not book.check_outside()  # touched, not changed
@@ -200,11 +176,11 @@ def test_a_reload_of_what_is_no_workbook_changes_nothing(path):
         book.save()
 
 
-def test_a_file_that_cannot_be_written_loses_nothing(path, filled, monkeypatch):
+def test_a_file_that_cannot_be_written_loses_nothing(path, monkeypatch):
     def refuse(*_):
         raise OSError(28, "No space left on device")
 
-    book = Book.open_disk(path)
+    filled, book = path.read_bytes(), Book.open_disk(path)
     set_height(book, 150)
     with monkeypatch.context() as patch:
         patch.setattr("assess.web.disk_file.os.fsync", refuse)
@@ -228,10 +204,7 @@ def test_a_file_that_cannot_be_written_loses_nothing(path, filled, monkeypatch):
     assert heights(path) == [1.5, 1.8]
 
 
-# ---------------------------------------------------------------- files that it names
-
-
-def test_missing_files_are_listed_with_their_cells(named):
+def test_missing_files_are_listed_and_none_is_replaced_or_added_that_the_workbook_does_not_name(named, tmp_path):
     missing = {one["name"]: one for one in Book.open_disk(named).describe()["missing"]}
     lines = {one["field"]: one["row"] for one in Book.open_disk(named).describe()["sheets"][0]["columns"]}
     photo = PLACES["Items", "photo"]
@@ -241,6 +214,22 @@ def test_missing_files_are_listed_with_their_cells(named):
     assert missing["p.png"]["cells"] == [["Items", 2, photo], ["Items", 3, photo]]
     assert missing["records/a.smc"]["cells"] == [["Floors", 2, PLACES["Floors", "record_x"]]]
     assert missing["logo.png"]["cells"] == [["Building", lines["logo"], 1]]
+    book, before = Book.open_disk(named), sorted(tmp_path.rglob("*"))
+    for name in ("other.png", "../outside.png", "office.xlsx", "/etc/passwd", "", "p.png\x00", "P.PNG"):
+        with pytest.raises(InputError):
+            book.add_file(name, b"x")
+    assert sorted(tmp_path.rglob("*")) == before
+    (named.parent / "p.png").write_bytes(b"theirs")
+    with pytest.raises(InputError):
+        book.add_file("p.png", b"x")
+    assert (named.parent / "p.png").read_bytes() == b"theirs"
+    (named.parent / "records").write_bytes(b"a file where the folder belongs")
+    with pytest.raises((OutputError, InputError)):
+        book.add_file("records/a.smc", b"x")
+    (named.parent / "logo.png").symlink_to(tmp_path / "elsewhere.png")  # leads out of the folder
+    with pytest.raises(InputError):
+        book.add_file("logo.png", b"x")
+    assert not (tmp_path / "elsewhere.png").exists()
 
 
 @pytest.mark.parametrize("mode", ["disk", "held"])
@@ -262,25 +251,5 @@ def test_a_missing_file_is_taken_in(named, tmp_path, mode):
     found = book.edit(book.version, [["Floors", 2, column, None], ["Floors", 3, column, None]], "clear")
     assert {one["name"] for one in found["missing"]} == {"logo.png"}
     assert [one.name for one in book.snapshot().inventory.floors[0].records["X"]] == [
-        "records/a.smc#1",
-        "records/a.smc",
-    ]
-
-
-def test_no_file_is_replaced_or_added_that_the_workbook_does_not_name(named, tmp_path):
-    book, before = Book.open_disk(named), sorted(tmp_path.rglob("*"))
-    for name in ("other.png", "../outside.png", "office.xlsx", "/etc/passwd", "", "p.png\x00", "P.PNG"):
-        with pytest.raises(InputError):
-            book.add_file(name, b"x")
-    assert sorted(tmp_path.rglob("*")) == before
-    (named.parent / "p.png").write_bytes(b"theirs")
-    with pytest.raises(InputError):
-        book.add_file("p.png", b"x")
-    assert (named.parent / "p.png").read_bytes() == b"theirs"
-    (named.parent / "records").write_bytes(b"a file where the folder belongs")
-    with pytest.raises((OutputError, InputError)):
-        book.add_file("records/a.smc", b"x")
-    (named.parent / "logo.png").symlink_to(tmp_path / "elsewhere.png")  # leads out of the folder
-    with pytest.raises(InputError):
-        book.add_file("logo.png", b"x")
-    assert not (tmp_path / "elsewhere.png").exists()
+        "records/a.smc#1", "records/a.smc",
+    ]  # fmt: skip

@@ -1,7 +1,6 @@
 """A workbook with what only spreadsheet programs know, edited: all of it stays, and LibreOffice shows the same."""
 
 import shutil
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -9,13 +8,9 @@ from openpyxl import load_workbook
 
 from assess.web.book import Book
 from tests.web.opened import edit
+from tests.workbooks import parts_of
 
 USERS = Path(__file__).parents[1] / "nets" / "workbooks"
-
-
-def parts_of(path):
-    with zipfile.ZipFile(path) as archive:
-        return {name: archive.read(name) for name in archive.namelist()}
 
 
 @pytest.mark.slow

@@ -10,14 +10,14 @@ from PIL import Image
 from shapely import Polygon, union_all
 
 import assess
-from assess.report import content
-from assess.report.figures.plan import BORDER, build_plan
-from assess.report.figures.ways import build_stretches
+from assess.report.content import Content
+from assess.report.figures.plan import BORDER
+from assess.routes.geometry import rectangle
 from assess.web.floor_plan import describe_plan, find_picture
-from assess.workbook.template import Content, write_workbook
 from tests.pictures import picture
 from tests.plans.drawings import PLAN_SVG
-from tests.web.opened import edit, hold
+from tests.report.reading import plans_of
+from tests.web.opened import edit, hold, write_template
 from tests.workbooks import UNVERIFIED
 
 FLOORS = [
@@ -46,8 +46,7 @@ def path(tmp_path):
     (tmp_path / "p.png").write_bytes(picture("PNG", size=(1600, 1200)))
     (tmp_path / "p.svg").write_bytes(PLAN_SVG)
     rows = {"Floors": FLOORS, "Items": ITEMS, "Places": PLACES, "Routes": ROUTES}
-    write_workbook(tmp_path / "w.xlsx", Content(rows), spare=3)
-    return tmp_path / "w.xlsx"
+    return write_template(tmp_path / "w.xlsx", rows)
 
 
 def _plan(book, floor=None):
@@ -58,50 +57,36 @@ def _area(rings):
     return union_all([Polygon(ring) for ring in rings])
 
 
-def _drawn(results):
-    ways = build_stretches(results.route_tables)
-    pages = content.Content(results).floors
-    built = (build_plan(page, results, ways.get(page.floor.floor, ())) for page in pages)
-    return {page.floor.floor: plan for page, plan in zip(pages, built, strict=True) if plan is not None}
-
-
-def _footprint(piece):
-    from assess.routes.geometry import rectangle
-
-    half = piece["breadth"] / 2
-    return Polygon(rectangle((piece["x"], piece["y"]), piece["angle"], (-half, half), piece["width"]))
-
-
-def _compare(book, results):
-    """Hold pieces, falls, rooms and segments against the report's; return how many falls there are."""
-    falls = 0
-    for floor, expected in _drawn(results).items():
-        plan = _plan(book, floor)
+def test_falls_end_at_the_walls_as_in_the_report(path):
+    """Pieces, falls, rooms and segments are those of the report."""
+    book, results, falls = hold(path), assess.run(assess.read_inventory(path), UNVERIFIED), 0
+    for page, expected in zip(Content(results).floors, plans_of(results), strict=True):
+        if expected is None:
+            continue
+        plan = _plan(book, page.floor.floor)
         by_row = {one["row"]: one for one in plan["pieces"]}
         rows = [results.item_rows[one.number - 1].row for one in expected.pieces]
         assert sorted(by_row) == sorted(rows)
         for row, one in zip(rows, expected.pieces, strict=True):
-            assert _footprint(by_row[row]).symmetric_difference(Polygon(one.corners)).area < 1e-3
+            piece, half = by_row[row], by_row[row]["breadth"] / 2
+            shape = Polygon(rectangle((piece["x"], piece["y"]), piece["angle"], (-half, half), piece["width"]))
+            assert shape.symmetric_difference(Polygon(one.corners)).area < 1e-3
             if one.fallen:
                 falls += 1
-                assert _area(by_row[row]["fallen"]).symmetric_difference(_area(one.fallen)).area < 1e-2
+                assert _area(piece["fallen"]).symmetric_difference(_area(one.fallen)).area < 1e-2
         outlines = {tuple(map(tuple, one["outline"])) for one in plan["places"] if one["outline"]}
         assert outlines == {room.outline for room in expected.rooms}
         ways = sorted(_area([one.corners]).area for one in expected.ways)
         assert sorted(_area([one["outline"]]).area for one in plan["segments"] if one["outline"]) == pytest.approx(
             ways, abs=1e-2
         )
-    return falls
-
-
-def test_falls_end_at_the_walls_as_in_the_report(path):
-    assert _compare(hold(path), assess.run(assess.read_inventory(path), UNVERIFIED)) == 4
+    assert falls == 4
     found = {one["item"]: one for one in _plan(hold(path))["pieces"]}
     assert len(found["A2"]["fallen"]) == 1, "it falls away from its wall"
     assert max(x for ring in found["A2"]["fallen"] for x, _ in ring) < 7.6
 
 
-def test_pieces_with_errors_are_still_drawn(path):
+def test_pieces_with_errors_are_still_drawn_and_without_floors_or_pictures_there_is_a_frame(path):
     book = hold(path)
     edit(book, ("Items", 2, "height", "tall"), ("Items", 3, "breadth", None), ("Items", 4, "quantity", "x"))
     edit(book, *(("Items", 8, name, value) for name, value in (("item", "new"), ("floor", "1"), ("x", 3), ("y", 3))))
@@ -111,12 +96,27 @@ def test_pieces_with_errors_are_still_drawn(path):
     assert (found["new"]["breadth"], found["new"]["width"], found["new"]["fallen"]) == (0.4, 0.4, [])
     assert (found["A2"]["breadth"], found["A2"]["width"]) == (0.4, 0.8)
     assert len(found["A3"]["fallen"]) == 2
+    # It is drawn as Breadth, as the routes assume it; nobody may take that for what the piece covers.
+    book = hold(path)
+    edit(book, ("Items", 2, "width", None))
+    (shelves,) = _plan(book, "2")["pieces"]
+    assert (shelves["missing"], shelves["width"]) == (["width"], shelves["breadth"])
+    piece = _plan(book, "1")["pieces"][0]
+    assert (piece["missing"], piece["width"], len(piece["fallen"])) == (["width"], 0.3, 2)
+    edit(book, *(("Floors", row, "floor", None) for row in (2, 3, 4)))
+    plan = _plan(book)
+    assert (plan["floor"], plan["floor_row"], plan["pieces"]) == ("", None, [])
+    assert plan["frame"] == [-BORDER, -BORDER, 12 + BORDER, 8 + BORDER]
+    book = hold(path)
+    (path.parent / "p.png").write_bytes(b"\x89PNG\r\n\x1a\nbroken")
+    (path.parent / "p.svg").unlink()
+    edit(book, ("Floors", 2, "plan_turn", 5))
+    for floor in ("1", "2", "3", "none"):
+        assert find_picture(book.snapshot(), floor) is None
+        assert _plan(book, floor)["picture"] is None
 
 
-# ---------------------------------------------------------------- pictures
-
-
-def test_a_picture_is_drawn_anew(path):
+def test_a_picture_is_drawn_anew_and_a_drawing_shown_before_it_is_placed(path):
     """Nothing of a user's file reaches the page as it is."""
     book = hold(path)
     given = _plan(book, "1")["picture"]
@@ -127,9 +127,6 @@ def test_a_picture_is_drawn_anew(path):
     shown = Image.open(io.BytesIO(data))
     assert (kind, shown.format, shown.mode, shown.size) == ("image/jpeg", "JPEG", "L", (1600, 1200))
     assert given["url"].startswith("/api/picture?floor=1&v=")
-
-
-def test_a_drawing_is_shown_before_it_is_placed(path):
     book = hold(path)
     plan = _plan(book, "2")
     given = plan["picture"]
@@ -151,27 +148,3 @@ def test_a_drawing_is_shown_before_it_is_placed(path):
     plan = _plan(book, "3")  # an empty floor has room for it
     assert plan["picture"]["aspect"] == 0.75
     assert plan["frame"] == pytest.approx([-BORDER, -BORDER, 20 + BORDER, 15 + BORDER])
-
-
-def test_a_picture_that_cannot_be_used_is_none(path):
-    book = hold(path)
-    (path.parent / "p.png").write_bytes(b"\x89PNG\r\n\x1a\nbroken")
-    (path.parent / "p.svg").unlink()
-    edit(book, ("Floors", 2, "plan_turn", 5))
-    for floor in ("1", "2", "3", "none"):
-        assert find_picture(book.snapshot(), floor) is None
-        assert _plan(book, floor)["picture"] is None
-
-
-def test_an_unknown_width_is_told_and_without_floors_there_is_a_frame(path):
-    """It is drawn as Breadth, as the routes assume it; nobody may take that for what the piece covers."""
-    book = hold(path)
-    edit(book, ("Items", 2, "width", None))
-    (shelves,) = _plan(book, "2")["pieces"]
-    assert (shelves["missing"], shelves["width"]) == (["width"], shelves["breadth"])
-    piece = _plan(book, "1")["pieces"][0]
-    assert (piece["missing"], piece["width"], len(piece["fallen"])) == (["width"], 0.3, 2)
-    edit(book, *(("Floors", row, "floor", None) for row in (2, 3, 4)))
-    plan = _plan(book)
-    assert (plan["floor"], plan["floor_row"], plan["pieces"]) == ("", None, [])
-    assert plan["frame"] == [-BORDER, -BORDER, 12 + BORDER, 8 + BORDER]

@@ -77,17 +77,14 @@ def test_a_ticket_opens_the_page_once_and_becomes_a_strict_cookie(tmp_path):
     assert server.url.split("=")[1] not in out + err  # nothing is logged after the address was printed
 
 
-def test_other_names_of_the_host_are_refused(client):
+def test_other_names_of_the_host_and_changes_from_other_pages_are_refused(client):
     port = client.port
     for host in ("example.org", f"example.org:{port}", "127.0.0.1", "localhost", f"127.0.0.1:{port}.evil.org",
                  f"127.0.0.1:{port + 1}", f"127.0.0.1.nip.io:{port}", f"0.0.0.0:{port}", ""):  # fmt: skip
         assert client.get("/api/state", Host=host).status == 421, host
     for host in (f"127.0.0.1:{port}", f"localhost:{port}", f"LOCALHOST:{port}"):
         assert client.get("/api/state", Host=host).status == 200, host
-
-
-def test_changes_come_from_the_page_alone(client):
-    """A page of another origin, of another port of this machine, a form without our header, a browser that says so."""
+    # A page of another origin, of another port of this machine, a form without our header, a browser that says so.
     for headers in (
         {"Origin": "https://example.org"}, {"Origin": None}, {"Origin": "null"},
         {"Origin": f"http://127.0.0.1:{client.port + 1}"}, {"Origin": client.base + "/"}, {"X-Assess": None},
@@ -101,7 +98,7 @@ def test_changes_come_from_the_page_alone(client):
         assert client.get("/", **{"Sec-Fetch-Site": site, "Sec-Fetch-Dest": "document"}).status == 200  # a link
 
 
-def test_every_answer_has_the_headers_that_confine_the_page(client):
+def test_every_answer_confines_the_page_and_its_files_alone_are_given_with_their_kind(client):
     stranger = Client(client.base)
     for reply in (client.get("/"), client.get("/api/state"), client.get("/nothing"), stranger.get("/"),
                   client.post("/api/edit"), client.get("/", Host="example.org")):  # fmt: skip
@@ -115,9 +112,6 @@ def test_every_answer_has_the_headers_that_confine_the_page(client):
             "cross-origin-resource-policy")}  # fmt: skip
         assert list(found.values()) == ["nosniff", "no-store", "no-referrer", "same-origin", "same-origin"]
         assert reply.headers["server"] is None
-
-
-def test_files_of_the_page_and_no_others_are_given_with_their_kind(client):
     assert client.get("/").headers["content-type"] == "text/html; charset=utf-8"
     assert client.get("/main.mjs").headers["content-type"] == "text/javascript; charset=utf-8"
     assert client.get("/page.css").headers["content-type"] == "text/css; charset=utf-8"
@@ -127,17 +121,19 @@ def test_files_of_the_page_and_no_others_are_given_with_their_kind(client):
         assert client.get(path).status == 404, path
 
 
-def test_what_is_too_large_is_refused(client):
+def test_what_is_too_large_cannot_be_read_or_is_no_workbook_is_refused(client):
     assert client.request("POST", "/api/edit", b"x" * (33 * 2**20)).status == 413
     assert client.request("POST", "/api/upload?name=a.xlsx", iter([b"x" * 2**20] * 70)).status == 413  # in pieces
     assert client.request("POST", "/api/upload?name=a.xlsx", b"x" * (65 * 2**20)).status == 413
-
-
-def test_bodies_that_cannot_be_read_are_refused(client):
     for body in (b"{", b"[]", b"1", b"\xff", b'{"a": NaN}', b'{"a": 1e999}', b"[" * 100_000, b'{"a": "\\ud800"}',
                  b'{"a": ' + b"9" * 5000 + b"}"):  # fmt: skip
         reply = client.request("POST", "/api/what-if", body)
         assert (reply.status, reply.json()["message"]) == (400, "The request cannot be read."), body[:20]
+    for data in (b"", b"junk", b"PK\x03\x04" + b"\0" * 400):
+        reply = client.send("/api/upload", "../../a.xlsx", data)
+        assert reply.status == 422
+        assert reply.json()["problems"][0]["message"]
+    assert client.get("/api/state").json()["state"] is None
 
 
 @pytest.mark.slow
@@ -164,11 +160,3 @@ def test_strange_requests_are_never_an_error_of_the_server(running, client):
         assert client.request(method, "/api/state").status == 405, method
     assert client.get("/api/live?since=%C2%B2").status == 404  # no workbook is open
     assert client.get("/api/state").status == 200
-
-
-def test_what_is_no_workbook_is_refused_with_its_problems(client):
-    for data in (b"", b"junk", b"PK\x03\x04" + b"\0" * 400):
-        reply = client.send("/api/upload", "../../a.xlsx", data)
-        assert reply.status == 422
-        assert reply.json()["problems"][0]["message"]
-    assert client.get("/api/state").json()["state"] is None

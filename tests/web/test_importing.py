@@ -32,7 +32,6 @@ PLANS = ["duplex-Level-1.svg", "duplex-Level-2.svg", "duplex-Roof.svg"]
 
 @pytest.fixture(scope="module")
 def house(tmp_path_factory):
-    """Return the bytes of a small model."""
     return write_house(tmp_path_factory.mktemp("house") / "house.ifc").read_bytes()
 
 
@@ -55,7 +54,6 @@ def _begin_sending(client, length, data):
 
 
 def _list_left(tmp_path):
-    """Return the folders of models below the folders of the server."""
     return list_named(tmp_path / "tmp", "import-")
 
 
@@ -110,10 +108,8 @@ def test_a_cobie_file_and_a_scan_are_recognised_by_their_content(served, tmp_pat
     begun = server.client.send("/api/upload", "handover.xlsx", path.read_bytes()).json()
     found = wait_until(lambda: server.client.get("/api/import").json()["import"], lambda one: one["state"] != "running")
     assert (found["id"], found["state"], found["workbook"]) == (
-        begun["import"]["id"],
-        "done",
-        "handover-inventory.xlsx",
-    )
+        begun["import"]["id"], "done", "handover-inventory.xlsx",
+    )  # fmt: skip
     assert (found["found"]["pieces"], found["found"]["skipped"][0]["types"]) == (2, [["Door B", 1]])
     assert server.client.post("/api/import/open").json()["name"] == "handover-inventory.xlsx"
     office = write(tmp_path / "mine.xlsx")
@@ -225,9 +221,6 @@ def test_what_is_too_large_is_refused_however_it_is_sent(served_here, tmp_path):
     assert client.get("/api/import").json() == {"import": None, "opened": None, "most": MOST_MODEL}
 
 
-# ---------------------------------------------------------------- without a server
-
-
 def _begin(tmp_path, slots, data=b"x"):
     folder = tmp_path / "import-1"
     folder.mkdir()
@@ -242,7 +235,7 @@ def test_a_reading_for_which_nobody_asks_ends(tmp_path, monkeypatch):
     assert (found.state, list(tmp_path.iterdir())) == ("cancelled", [])
 
 
-def test_plans_get_names_that_no_other_file_and_no_other_plan_has(tmp_path):
+def test_plans_workbooks_and_models_get_names_that_nothing_else_has(tmp_path):
     """Storeys "EG" and "EG 2": the second name of the first plan is that of the second plan."""
     (tmp_path / "a.svg").write_bytes(b"mine")
     (tmp_path / "a-2.svg").write_bytes(b"a")  # of an earlier import of the same model
@@ -258,17 +251,6 @@ def test_plans_get_names_that_no_other_file_and_no_other_plan_has(tmp_path):
     (tmp_path / "m-EG-2.svg").write_bytes(b"mine, too")
     renamed = importing._rename_files(found, tmp_path)
     assert [renamed.files[row["plan"]] for row in renamed.floors[:4]] == [*plans.values()]
-
-
-def test_without_a_place_nothing_is_kept(tmp_path):
-    slots = Slots(1, READING)
-    slots.take()
-    with pytest.raises(RequestError, match="Other building models are being read"):
-        _begin(tmp_path, slots)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_names_of_new_workbooks_and_of_models(tmp_path):
     assert name_workbook("duplex.ifc") == "duplex.xlsx"
     assert name_workbook("hand.over.XLSX") == "hand.over-inventory.xlsx"
     assert name_workbook("con.ifc") == "workbook.xlsx"
@@ -278,3 +260,11 @@ def test_names_of_new_workbooks_and_of_models(tmp_path):
     assert clean_name("C:\\x\\../../b\u202e<1>.ifc") == "b1.ifc"
     assert (len(clean_name("a" * 300 + ".ifc")), clean_name("a" * 300 + ".ifc")[-5:]) == (120, "a.ifc")
     assert clean_name("..") == ""
+
+
+def test_without_a_place_nothing_is_kept(tmp_path):
+    slots = Slots(1, READING)
+    slots.take()
+    with pytest.raises(RequestError, match="Other building models are being read"):
+        _begin(tmp_path, slots)
+    assert list(tmp_path.iterdir()) == []

@@ -37,7 +37,6 @@ def running(tmp_path_factory):
 
 
 def _list_left(server):
-    """Return the files of jobs below the folders of the server."""
     return list_named(server.folder.parent / "tmp", "job-")
 
 

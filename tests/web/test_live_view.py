@@ -1,12 +1,9 @@
 """Classes, words, problems and what of them changed, as the page is told while one types."""
 
-import io
 import json
-import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
-import formualizer
 import pytest
 
 import assess
@@ -17,7 +14,9 @@ from assess.risk import RiskClass
 from assess.web.live import LiveView
 from assess.workbook.schema import LIVE
 from assess.workbook.template import Content, write_workbook
+from tests.recalculate import evaluate
 from tests.web.opened import MARKET, edit, hold
+from tests.workbook.books import change_parts, replace
 from tests.workbooks import FLOORS, ITEMS, UNVERIFIED, write
 
 HERE = ("class", "word", "chance", "outside")
@@ -35,7 +34,6 @@ def _by_row(answer):
 
 
 def _expect(results):
-    """Return class, word and chance of each row of a run."""
     return {
         one.item.row: ("", "anchored", None)
         if one.is_anchored
@@ -54,9 +52,6 @@ def _write(path, rows, language="en"):
     return path
 
 
-# ---------------------------------------------------------------- classes
-
-
 @pytest.mark.slow
 def test_classes_and_chances_are_those_of_the_run(example):
     """Floors with records, for which the sheet's own formulas ask for a run, among them."""
@@ -71,19 +66,11 @@ def test_classes_and_chances_are_those_of_the_run(example):
     assert pfa["42"] == pytest.approx((0.2224, 0.1359), abs=1e-4)
 
 
-# ---------------------------------------------------------------- words in place of a class
-
 SLIPS = [
     ("item", "A1"),  # duplicate
-    ("item", None),
-    ("floor", "9"),
-    ("floor", None),
-    ("axis", "Z"),
-    ("height", None),
-    ("height", "tall"),
-    ("breadth", 4),
-    ("anchored", "yes"),
-]
+    ("item", None), ("floor", "9"), ("floor", None), ("axis", "Z"), ("height", None), ("height", "tall"),
+    ("breadth", 4), ("anchored", "yes"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("language", ["en", "it"])
@@ -98,8 +85,7 @@ def test_a_row_without_a_class_has_the_word_of_the_class_column(tmp_path, langua
     answer = _answer(book)
     words = {at: (risk, word) for at, (risk, word, *_) in _by_row(answer).items()}
     path.write_bytes(book.write())
-    calculated = formualizer.load_workbook(str(path))
-    calculated.evaluate_all()
+    calculated = evaluate(path)
     title = book.sheets["Items"].title
     shown = {at: calculated.get_value(title, at, 2) or "" for at in words}
     assert words.pop(3)[1] == {"en": "check", "it": "controllare"}[language]
@@ -109,7 +95,7 @@ def test_a_row_without_a_class_has_the_word_of_the_class_column(tmp_path, langua
     assert words[max(words)][1] == {"en": "shaking?", "it": "scuotimento?"}[language]
 
 
-def test_floors_without_shaking_leave_the_others_their_classes(tmp_path):
+def test_floors_without_shaking_leave_the_others_their_classes_and_changes_make_up_the_whole(tmp_path):
     book = hold(write(tmp_path / "w.xlsx"))
     whole = _classes(_answer(book))
     edit(book, ("Floors", 3, "pfa_x", None))
@@ -124,44 +110,6 @@ def test_floors_without_shaking_leave_the_others_their_classes(tmp_path):
     answer = _answer(book)
     assert "floor '1'" in answer["error"]
     assert answer["counts"] == {"low": 0, "medium": 0, "high": 0, "very_high": 0, "": 7}
-
-
-@pytest.mark.slow
-def test_the_run_and_the_page_agree_on_a_faulty_workbook(tmp_path):
-    """Whatever is left out, what stays is assessed as the command does."""
-    book, view = hold(MARKET), LiveView()
-    version = _answer(book, view)["version"]
-    edit(book, ("Items", 5, "height", 90))
-    for _ in range(2):
-        assert _answer(book, view, version)["items"]["row"] == [5], "asked again, it is the same"
-    assert _answer(book, view, book.version)["items"]["row"] == []
-    wrong = [("Floors", 3, "pfa_x", "strong"), ("Items", 7, "height", "tall"), ("Items", 8, "axis", "Z"),
-             ("Items", 9, "quantity", -3), ("Building", 0, "ground_pga", "a lot")]  # fmt: skip
-    edit(book, *wrong)
-    (tmp_path / "w.xlsx").write_bytes(book.write())
-    inventory = assess.read_inventory(tmp_path / "w.xlsx", records=MARKET.parent, strict=False)
-    expected, answer = _expect(assess.run(inventory, UNVERIFIED)), _answer(book)
-    found = _classes(answer)
-    assert {row: found[row] for row in expected} == expected
-    assert all(found[row][0] == "" for row in found.keys() - expected.keys())
-    cells = {(one["sheet"], *cell) for one in answer["problems"] if one["severity"] == "error" for cell in one["cells"]}
-    assert cells >= {(sheet, *(book.sheets[sheet].place(field, row) or ())) for sheet, row, field, _ in wrong}
-
-
-# ---------------------------------------------------------------- what changed
-
-STEPS: list[list[Any]] = [
-    [("Items", 3, "height", 90)],
-    [("Items", 4, "anchored", "yes"), ("Items", 5, "anchored", "no")],
-    [("Floors", 3, "pfa_x", 0.1)],
-    [("Items", 2, field, None) for field in ("item", "floor", "room", "description", "breadth", "width", "height")],
-    [("Items", 9, "item", "B1"), ("Items", 9, "floor", "2"), ("Items", 9, "breadth", 20), ("Items", 9, "height", 200)],
-    [("Items", 9, "height", "high")],
-    [("Floors", 2, "floor", "ground")],
-]
-
-
-def test_the_changes_make_up_the_whole(tmp_path):
     book, view = hold(write(tmp_path / "w.xlsx")), LiveView()
     first = _answer(book, view)
     held, version = _by_row(first), first["version"]
@@ -186,11 +134,27 @@ def test_the_changes_make_up_the_whole(tmp_path):
     assert _answer(book, view, version)["whole"], "it is too old"
 
 
-# ---------------------------------------------------------------- problems
-
-
 @pytest.mark.slow
-def test_sessions_of_two_languages_do_not_mix(tmp_path):
+def test_the_run_and_the_page_agree_on_a_faulty_workbook_and_two_languages_do_not_mix(tmp_path):
+    """Whatever is left out, what stays is assessed as the command does."""
+    book, view = hold(MARKET), LiveView()
+    version = _answer(book, view)["version"]
+    edit(book, ("Items", 5, "height", 90))
+    for _ in range(2):
+        assert _answer(book, view, version)["items"]["row"] == [5], "asked again, it is the same"
+    assert _answer(book, view, book.version)["items"]["row"] == []
+    wrong = [("Floors", 3, "pfa_x", "strong"), ("Items", 7, "height", "tall"), ("Items", 8, "axis", "Z"),
+             ("Items", 9, "quantity", -3), ("Building", 0, "ground_pga", "a lot")]  # fmt: skip
+    edit(book, *wrong)
+    (tmp_path / "w.xlsx").write_bytes(book.write())
+    inventory = assess.read_inventory(tmp_path / "w.xlsx", records=MARKET.parent, strict=False)
+    expected, answer = _expect(assess.run(inventory, UNVERIFIED)), _answer(book)
+    found = _classes(answer)
+    assert {row: found[row] for row in expected} == expected
+    assert all(found[row][0] == "" for row in found.keys() - expected.keys())
+    cells = {(one["sheet"], *cell) for one in answer["problems"] if one["severity"] == "error" for cell in one["cells"]}
+    assert cells >= {(sheet, *(book.sheets[sheet].place(field, row) or ())) for sheet, row, field, _ in wrong}
+
     def words(language):
         book = hold(paths[language])
         return {_by_row(_answer(book))[5][1] for _ in range(6)}
@@ -200,22 +164,22 @@ def test_sessions_of_two_languages_do_not_mix(tmp_path):
         assert list(pool.map(words, ["en", "it"] * 3)) == [{"anchored"}, {"ancorato"}] * 3
 
 
-def test_a_workbook_without_a_sheet_is_answered(tmp_path):
-    path = write(tmp_path / "w.xlsx")
-    renamed = io.BytesIO()
-    with zipfile.ZipFile(path) as old, zipfile.ZipFile(renamed, "w") as new:
-        for name in old.namelist():
-            data = old.read(name)
-            if name == "xl/workbook.xml":
-                data = data.replace(b'name="Floors"', b'name="Mine"')
-            new.writestr(name, data)
-    path.write_bytes(renamed.getvalue())
-    answer = _answer(hold(path))
+STEPS: list[list[Any]] = [
+    [("Items", 3, "height", 90)],
+    [("Items", 4, "anchored", "yes"), ("Items", 5, "anchored", "no")],
+    [("Floors", 3, "pfa_x", 0.1)],
+    [("Items", 2, field, None) for field in ("item", "floor", "room", "description", "breadth", "width", "height")],
+    [("Items", 9, "item", "B1"), ("Items", 9, "floor", "2"), ("Items", 9, "breadth", 20), ("Items", 9, "height", 200)],
+    [("Items", 9, "height", "high")],
+    [("Floors", 2, "floor", "ground")],
+]
+
+
+def test_without_a_sheet_with_all_live_columns_and_with_an_unknown_type_a_workbook_is_answered(tmp_path):
+    renamed = {"xl/workbook.xml": replace('name="Floors"', 'name="Mine"')}
+    answer = _answer(hold(change_parts(write(tmp_path / "w.xlsx"), renamed)))
     assert any(one["sheet"] == "Floors" and one["row"] is None for one in answer["problems"])
     assert not any(answer["items"]["class"])
-
-
-def test_live_columns_show_what_the_formulas_of_the_sheet_show(tmp_path):
     book = hold(_write(tmp_path / "w.xlsx", {}))
     items = _answer(book)["items"]
     found = {one.label: items["values"][str(at)] for at, one in book.sheets["Items"].columns.items()
@@ -226,10 +190,7 @@ def test_live_columns_show_what_the_formulas_of_the_sheet_show(tmp_path):
     for shown, expected in zip(rows, live_values(book.snapshot().inventory), strict=True):
         for place, value in zip(order, shown, strict=True):
             assert value == (pytest.approx(expected[place]) if isinstance(expected[place], float) else expected[place])
-
-
-def test_a_type_that_is_not_known_is_to_be_checked(tmp_path):
-    """Without sizes of its own the piece has no class for that; one that is only begun is left alone."""
+    # Without sizes of its own the piece has no class for that; one that is only begun is left alone.
     items = [{"item": "A1", "floor": "1", "breadth": 40, "height": 180}] * 3
     book = hold(_write(tmp_path / "w.xlsx", {"Items": items, "Floors": FLOORS}))
     edit(

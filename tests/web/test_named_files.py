@@ -16,7 +16,6 @@ EPICENTRE_PLACE = {"latitude": 37.04, "longitude": -121.88}
 
 @pytest.fixture
 def book(tmp_path):
-    """A workbook whose ShakeMap is missing."""
     (tmp_path / "own").mkdir()
     path = write(tmp_path / "own" / "office.xlsx", floors=FLOORS, shakemap="grid.xml", **EPICENTRE_PLACE)
     return Book.open_disk(path)

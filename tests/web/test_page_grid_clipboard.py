@@ -3,8 +3,6 @@
 import pytest
 from playwright.sync_api import expect
 
-from tests.web.opened import write_office
-from tests.web.sheet_page import opened
 from tests.workbooks import ITEMS
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -28,11 +26,6 @@ FROM_EXCEL = """<html xmlns:x="urn:schemas-microsoft-com:office:excel"><head>
 FROM_SHEETS = """<meta charset='utf-8'><google-sheets-html-origin><table><tbody><tr>
 <td data-sheets-value='{"1":2,"2":"Desk"}'>Desk</td>
 <td data-sheets-value='{"1":3,"3":62.5}'>63</td></tr></tbody></table>"""
-
-
-@pytest.fixture
-def small(page, served_here, tmp_path):
-    return opened(page, served_here(write_office(tmp_path / "office.xlsx"))).open("Items")
 
 
 def test_a_thousand_rows_are_one_edit_and_one_step_back(small):

@@ -17,14 +17,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 BLANK = EXAMPLE.with_name("blank.xlsx")
 
 
-@pytest.fixture
-def small(page, served_here, tmp_path):
-    """Return the sheet Items of a small workbook."""
-    return opened(page, served_here(write_office(tmp_path / "office.xlsx"))).open("Items")
-
-
 def tab_to(sheet, selector, key="Tab"):
-    """Press Tab until an element has the focus."""
     for _ in range(30):
         if sheet.page.locator(f"{selector}:focus").count():
             return
@@ -33,7 +26,6 @@ def tab_to(sheet, selector, key="Tab"):
 
 
 def edit_elsewhere(sheet, room):
-    """Change a cell as another window of the session does."""
     client = sheet.server.client
     version = client.get("/api/book").json()["version"]
     done = client.post("/api/edit", {"version": version, "edits": [["Items", 2, 3, room]], "label": ""})

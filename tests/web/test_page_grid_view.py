@@ -14,7 +14,6 @@ HEIGHTS = {"B": 150, "a": 90, "C": 210, "d": None, "E": 90}
 
 @pytest.fixture
 def sorted_items(page, served_here, tmp_path):
-    """Return the sheet Items of pieces whose names and heights are in no order."""
     items = [
         {"item": name, "floor": "1", "room": room, "breadth": 40, "width": 80, "height": height}
         for (name, height), room in zip(HEIGHTS.items(), ("Hall", "Store", "Hall", "Hall", ""), strict=True)

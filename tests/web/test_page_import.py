@@ -24,7 +24,6 @@ DUPLEX = MODELS / "duplex.ifc"
 
 @pytest.fixture(scope="module")
 def house(tmp_path_factory):
-    """Return a small model."""
     return write_house(tmp_path_factory.mktemp("house") / "house.ifc")
 
 
@@ -92,9 +91,7 @@ def test_the_list_of_what_was_skipped_is_copied_and_none_of_it_becomes_a_formula
     ]  # fmt: skip
 
 
-def test_why_a_model_cannot_be_read_stands_beside_the_drop_area_and_a_second_try_works(
-    page, served_here, house, tmp_path
-):
+def test_a_model_that_cannot_be_read_is_told_and_a_second_try_works(page, served_here, house, tmp_path):
     server = served_here()
     found = page(server)
     cut = tmp_path / "cut.ifc"

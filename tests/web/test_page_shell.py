@@ -25,7 +25,6 @@ STATE = ".save-state"
 
 
 def browsing(test):
-    """Mark a test that opens a browser."""
     return pytest.mark.browser(pytest.mark.slow(test))
 
 
@@ -36,7 +35,6 @@ def office(tmp_path):
 
 @pytest.fixture
 def example(tmp_path):
-    """Return a copy of the worked example with the records that it names."""
     folder = tmp_path / "example"
     folder.mkdir()
     shutil.copytree(EXAMPLE.parent / "records", folder / "records")
@@ -60,19 +58,13 @@ def value(page, sheet, row, at):
     )
 
 
-# ---------------------------------------------------------------- without a browser
-
-
-def test_the_page_is_small_and_complete():
+def test_the_page_is_small_and_complete_names_no_other_server_and_makes_no_elements_of_text():
     files = [path for path in PAGE.rglob("*") if path.is_file()]
     assert sum(len(gzip.compress(path.read_bytes())) for path in files) <= MOST_BYTES
     name = re.compile(r'(?:from |import\(|href=|src=)"(?:\./)?([\w-]+\.(?:mjs|css))"')
     named = {found for path in files for found in name.findall(path.read_text("utf-8"))}
     assert len(named) > 20
     assert [name for name in sorted(named) if find_page_file(name) is None] == []
-
-
-def test_nothing_of_the_page_names_another_server_or_makes_elements_of_text():
     for path in PAGE.rglob("*.mjs"):
         text = path.read_text("utf-8").replace("http://www.w3.org/", "")
         assert not re.search(r"https?://|innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(", text), (
@@ -81,9 +73,6 @@ def test_nothing_of_the_page_names_another_server_or_makes_elements_of_text():
     assert not re.search(
         r"https?://|@import|url\((?!#)", "".join(path.read_text("utf-8") for path in PAGE.rglob("*.css"))
     )
-
-
-# ---------------------------------------------------------------- all views
 
 
 @browsing
@@ -129,9 +118,6 @@ def test_language_and_colours_are_kept_and_percentages_stay_on_their_side_of_a_l
     assert server.client.get("/api/book").json()["language"] == "en"
     found.get_by_label("Lingua della pagina").select_option("en")
     expect(found.get_by_label("Colours")).to_have_value("dark")
-
-
-# ---------------------------------------------------------------- nothing is lost
 
 
 @browsing

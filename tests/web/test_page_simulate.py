@@ -18,14 +18,12 @@ SIMULATED = [2, 3, 4, 5, 6]
 
 @pytest.fixture
 def simulating(page, served_here, tmp_path):
-    """Return a page that shows the simulation of a small workbook."""
     found = page(served_here(write_one_floor(tmp_path / "office.xlsx", height=12.0)))
     show(found, "simulate")
     return found
 
 
 def choose(page, *formats):
-    """Have only these formats written."""
     for box in page.get_by_role("checkbox").all():
         box.set_checked(any(one in box.locator("xpath=..").inner_text() for one in formats))
 

@@ -15,7 +15,6 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 @pytest.fixture
 def started(page, served_here):
-    """Return a page without a workbook, and its server."""
     server = served_here()
     found = page(server)
     expect(found.get_by_role("heading", name="Make a new workbook")).to_be_visible()

@@ -9,8 +9,7 @@ import assess
 from assess.report.say.route import say_blocked, say_outlook, say_room_state
 from assess.route_results import RouteState
 from assess.web.route_states import describe_routes
-from assess.workbook.template import Content, write_workbook
-from tests.web.opened import MARKET, edit, hold
+from tests.web.opened import MARKET, edit, hold, write_template
 from tests.workbooks import UNVERIFIED
 
 HALL: dict[str, list[dict[str, Any]]] = {
@@ -83,8 +82,7 @@ def test_a_piece_with_an_error_leaves_the_routes_to_the_others(tmp_path):
 
 @pytest.fixture
 def hall(tmp_path):
-    write_workbook(tmp_path / "w.xlsx", Content(HALL), spare=3)
-    return hold(tmp_path / "w.xlsx")
+    return hold(write_template(tmp_path / "w.xlsx", HALL))
 
 
 def test_an_edit_changes_a_state_and_a_faulty_segment_leaves_no_route_open(hall):
@@ -112,6 +110,5 @@ def test_routes_on_a_floor_without_shaking_are_not_known(hall):
 
 
 def test_without_routes_there_is_nothing_to_say(tmp_path):
-    write_workbook(tmp_path / "w.xlsx", Content({**HALL, "Routes": [], "Places": []}), spare=3)
-    answer = _answer(hold(tmp_path / "w.xlsx"))
+    answer = _answer(hold(write_template(tmp_path / "w.xlsx", {**HALL, "Routes": [], "Places": []})))
     assert [answer[name] for name in ("routes", "rooms", "segments", "remarks", "problems", "error")] == [[]] * 5 + [""]

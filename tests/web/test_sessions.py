@@ -73,9 +73,6 @@ def test_neither_a_cookie_nor_a_name_alone_lets_anyone_in(served):
     assert list((server.folder).iterdir()) == []
 
 
-# ---------------------------------------------------------------- what sessions may take
-
-
 @pytest.fixture
 def make(tmp_path):
     def make(limits=None):
@@ -91,16 +88,13 @@ def _visit(user, cookie=""):
     return HTTPConnection({"type": "http", "path": "/", "query_string": b"", "headers": headers})
 
 
-def test_a_name_that_comes_twice_is_not_the_proxys(make):
+def test_a_name_that_comes_twice_is_not_the_proxys_and_sessions_are_limited(make):
     """A proxy that adds its header to the one of the browser lets that one name anybody."""
     keys = Keys("X-User", 80, make)
     assert keys.admit(_visit(("ann", "ben"))) is None
     session = keys.admit(_visit("ann"))
     assert keys.find(_visit("ann", session.key)) is session
     assert keys.find(_visit(("ann", "ann"), session.key)) is None
-
-
-def test_sessions_are_limited_and_end_when_nobody_asks(make):
     keys = Keys("X-User", 80, make, Limits(sessions=2, idle=100.0))
     ann, ben = (keys.admit(_visit(user)) for user in ("ann", "ben"))
     with pytest.raises(RequestError, match="Too many users") as found:

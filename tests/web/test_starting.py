@@ -21,7 +21,8 @@ def test_a_template_has_classes_at_once(served):
     server = served()
     offers = server.client.get("/api/book")
     assert (offers.status, offers.json()["can_save"], offers.json()["folder"]) == (404, True, "home")
-    types = server.client.get("/api/start", Cookie=_speak(server, "it")).json()["types"]["Office"]
+    cookie = f"{server.client.headers['Cookie']}; assess-language=it"
+    types = server.client.get("/api/start", Cookie=cookie).json()["types"]["Office"]
     asked = {**ASKED, "pieces": [*ASKED["pieces"], {"type": types[0]["type"], "count": 1}]}
     book = server.client.post("/api/start", asked).json()
     assert (book["name"], book["mode"], book["language"], book["units"]) == ("ufficio.xlsx", "disk", "it", "imperial")
@@ -39,10 +40,6 @@ def test_a_template_has_classes_at_once(served):
     assert set(live["items"]["class"]) <= {"low", "medium", "high", "very_high"}
     (floor,) = assess.read_inventory(server.folder / "third.xlsx").floors
     assert floor.elevation is None
-
-
-def _speak(server, language):
-    return f"{server.client.headers['Cookie']}; assess-language={language}"
 
 
 @pytest.mark.slow
@@ -81,14 +78,11 @@ def test_every_text_of_the_page_is_found_where_its_modules_name_it(served):
     assert all(len(italian["texts"][one]) == 2 for one in many)
 
 
-def test_names_that_were_sent_are_made_safe():
+def test_names_that_were_sent_are_made_safe_and_literals_of_javascript_are_read_as_it_reads_them():
     assert make_safe("office.xlsx") == "office.xlsx"
     assert make_safe("../../etc/Büro 2.XLSM") == "Büro 2.XLSM"
     assert make_safe("C:\\Users\\a\\b?.xlsx") == "b.xlsx"
     assert {make_safe(name) for name in ("", "..", "\0", "con.xlsx", ".xlsx")} == {"workbook.xlsx"}
-
-
-def test_literals_of_javascript_are_read_as_it_reads_them():
     source = r"""t("a \"b\" é"), t('it\'s'), tn("{n} x", '{n} ' + "xs", n), t(`c`), set("no"), x.t("no"), t("long " +
         "text")"""
     found = [

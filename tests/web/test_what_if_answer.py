@@ -49,7 +49,7 @@ def market():
 
 
 @pytest.mark.slow
-def test_both_sides_are_those_of_runs(market, example):
+def test_both_sides_are_those_of_runs_also_with_named_pieces_and_more_than_there_are(market, example):
     before = market.write()
     answer = _try(market, first=3, scale=1.4)
     results = assess.run(market.snapshot().inventory, UNVERIFIED, figures=False, scale=1.4, anchor=3)
@@ -60,10 +60,6 @@ def test_both_sides_are_those_of_runs(market, example):
     assert answer["error"] == ""
     assert market.write() is before, "the very bytes"
     assert not market.state()["unsaved"]
-
-
-@pytest.mark.slow
-def test_named_pieces_the_first_fixes_besides_and_more_than_there_are(market):
     named, first, all_ = (_try(market, anchor=["42-04"], **more) for more in ({}, {"first": 1}, {"first": 10_000}))
     assert set(named["anchored"]) < set(first["anchored"])
     rows = assess.run(market.snapshot().inventory, UNVERIFIED, figures=False, anchor=("42-04",)).schedule.rows
@@ -71,7 +67,7 @@ def test_named_pieces_the_first_fixes_besides_and_more_than_there_are(market):
     assert [all_["after"]["counts"][one] for one in ("medium", "high", "very_high")] == [0, 0, 0]
 
 
-def test_a_scenario_that_the_workbook_cannot_serve_says_why(tmp_path):
+def test_scenarios_that_cannot_be_served_and_wrong_requests_say_why_and_a_faulty_row_stays_as_it_is(tmp_path):
     book = hold(write(tmp_path / "w.xlsx"))
     answer = _try(book, scenario="NTC 2018", scale=2)
     assert "Ground PGA, SDS, ShakeMap file and Shaking are blank" in answer["error"]
@@ -79,39 +75,25 @@ def test_a_scenario_that_the_workbook_cannot_serve_says_why(tmp_path):
     answer = _try(book, scenario="recorded", anchor=["A1"])
     assert "'1' has no record" in answer["error"]
     assert _items(answer["after"])[2] == ("", "anchored", None)
-
-
-WRONG = [
-    ({"scale": 0}, "scale is 0.0, expected above 0 and at most 10"),
-    ({"scale": 10.5}, "scale is 10.5"),
-    ({"scale": math.nan}, "scale is nan, expected a number"),
-    ({"scale": 10**400}, "scale is 1000"),
-    ({"scale": "2"}, "scale is '2', expected a number"),
-    ({"scale": True}, "scale is True"),
-    ({"first": -1}, "first is -1, expected a whole number, 0 or above"),
-    ({"first": 1.5}, "first is 1.5"),
-    ({"first": "3"}, "first is '3'"),
-    ({"anchor": "A1"}, "anchor is 'A1', expected a list"),
-    ({"anchor": [1]}, r"anchor is \[1\]"),
-    ({"anchor": ["A9"]}, "there is no item 'A9' in Items"),
-    ({"scenario": "strong"}, "scenario is 'strong', expected one of"),
-    ({"scenario": 3}, "scenario is 3"),
-    ({"verify": "all"}, "'verify' is not known, expected one of"),
-    ([], "cannot be read"),
-]
-
-
-def test_wrong_requests_are_refused(tmp_path):
     snapshot = hold(write(tmp_path / "w.xlsx")).snapshot()
     for request, match in WRONG:
         with pytest.raises(InputError, match=match):
             try_out(snapshot, request)
-
-
-def test_a_faulty_row_stays_as_it_is(tmp_path):
     book = hold(write(tmp_path / "w.xlsx"))
     edit(book, ("Items", 2, "height", "tall"))
     answer = _try(book, scale=2, first=1)
     assert _items(answer["before"])[2] == _items(answer["after"])[2] == ("", "check", None)
     with pytest.raises(InputError, match="'A1' cannot be anchored: its row 2 has an error"):
         _try(book, anchor=["A1"])
+
+
+WRONG = [
+    ({"scale": 0}, "scale is 0.0, expected above 0 and at most 10"), ({"scale": 10.5}, "scale is 10.5"),
+    ({"scale": math.nan}, "scale is nan, expected a number"), ({"scale": 10**400}, "scale is 1000"),
+    ({"scale": "2"}, "scale is '2', expected a number"), ({"scale": True}, "scale is True"),
+    ({"first": -1}, "first is -1, expected a whole number, 0 or above"), ({"first": 1.5}, "first is 1.5"),
+    ({"first": "3"}, "first is '3'"), ({"anchor": "A1"}, "anchor is 'A1', expected a list"),
+    ({"anchor": [1]}, r"anchor is \[1\]"), ({"anchor": ["A9"]}, "there is no item 'A9' in Items"),
+    ({"scenario": "strong"}, "scenario is 'strong', expected one of"), ({"scenario": 3}, "scenario is 3"),
+    ({"verify": "all"}, "'verify' is not known, expected one of"), ([], "cannot be read"),
+]  # fmt: skip

@@ -12,6 +12,8 @@ import xlsxwriter
 from assess.errors import Problem, WorkbookError
 from assess.model import Inventory, Item
 from assess.workbook.read import read_inventory
+from tests.motion.writers import zipped
+from tests.workbooks import parts_of
 
 Sheet = Sequence[Sequence[Any]]
 
@@ -20,7 +22,6 @@ ITEMS: Sheet = [["Item", "Floor", "Breadth [cm]", "Height [cm]"], ["A1", "1", 40
 
 
 def write_book(path: Path, sheets: Mapping[str, Sheet]) -> Path:
-    """Write these sheets, and no others, with openpyxl."""
     book = openpyxl.Workbook()
     book.remove(book.worksheets[0])
     for name, rows in sheets.items():
@@ -49,12 +50,10 @@ def write(folder: Path, items: Sheet = ITEMS, floors: Sheet = FLOORS, **others: 
 
 
 def read(folder: Path, items: Sheet = ITEMS, floors: Sheet = FLOORS, **others: Sheet) -> Inventory:
-    """Write such a workbook and read it."""
     return read_inventory(write(folder, items, floors, **others))
 
 
 def problems_of(path: Path) -> list[Problem]:
-    """Return what reading a faulty workbook reports."""
     with pytest.raises(WorkbookError) as caught:
         read_inventory(path)
     return list(caught.value.problems)
@@ -71,20 +70,16 @@ def remarks(inventory: Inventory, severity: str) -> set[str]:
 
 
 def read_part(path: Path, part: str) -> str:
-    """Return one part of a workbook's zip."""
     with zipfile.ZipFile(path) as archive:
         return archive.read(part).decode()
 
 
 def change_parts(path: Path, changes: Mapping[str, Callable[[bytes], bytes] | bytes]) -> Path:
     """Change or add parts of a workbook's zip, in place."""
-    with zipfile.ZipFile(path) as archive:
-        parts = {name: archive.read(name) for name in archive.namelist()}
+    parts = parts_of(path)
     for name, change in changes.items():
         parts[name] = change if isinstance(change, bytes) else change(parts[name])
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in parts.items():
-            archive.writestr(name, data)
+    path.write_bytes(zipped(parts))
     return path
 
 

@@ -1,13 +1,14 @@
 """Workbooks taken apart: their zip, their XML, and a process of its own to read them in."""
 
-import io
 import json
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
 from tests.apart import run_apart
+from tests.motion.writers import zipped
 from tests.workbook.books import FLOORS, ITEMS
+from tests.workbooks import parts_of
 
 STRINGS = "xl/sharedStrings.xml"
 SHEETS = {"Items": ITEMS, "Floors": FLOORS}
@@ -44,8 +45,8 @@ def read_apart(folder: Path) -> dict[str, str]:
 
 def add_part(path: Path, name: str, pieces: Iterator[bytes]) -> Path:
     """Write a large part into a workbook's zip piece by piece, in place of the one that is there."""
-    with zipfile.ZipFile(path) as archive:
-        parts = {one: archive.read(one) for one in archive.namelist() if one != name}
+    parts = parts_of(path)
+    parts.pop(name, None)
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
         for one, data in parts.items():
             archive.writestr(one, data)
@@ -56,7 +57,6 @@ def add_part(path: Path, name: str, pieces: Iterator[bytes]) -> Path:
 
 
 def sheet_of(rows: Iterator[bytes], before: bytes = b"", after: bytes = b"") -> Iterator[bytes]:
-    """Yield the pieces of a sheet's XML."""
     yield f'<worksheet xmlns="{MAIN}">'.encode() + before + b"<sheetData>"
     yield from rows
     yield b"</sheetData>" + after + b"</worksheet>"
@@ -74,8 +74,4 @@ TABLE = (HEADER + FIRST).encode()
 
 
 def zip_bytes(parts: dict[str, bytes]) -> bytes:
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w") as archive:
-        for name, data in parts.items():
-            archive.writestr(name, data)
-    return buffer.getvalue()
+    return zipped(parts, zipfile.ZIP_STORED)

@@ -14,7 +14,7 @@ NUMBERS = ("breadth", "width", "height", "weight", "centre_of_gravity")
 FLOORS = [{"floor": "1", "pfa_x": 0.5}]
 
 
-def test_sizes_make_sense():
+def test_sizes_make_sense_and_sources_can_be_cited_or_are_marked_assumed():
     for row in read_catalogue():
         breadth, width, height = row["breadth"], row.get("width"), row["height"]
         assert 5 <= breadth <= height <= 600, row
@@ -23,9 +23,6 @@ def test_sizes_make_sense():
         if "weight" in row:  # with what it holds: between paper in a light case and solid water
             density = row["weight"] / (breadth * width * height * 1e-6)
             assert 50 <= density <= 1000, row
-
-
-def test_sources_can_be_cited_or_are_marked_assumed():
     for row in catalogue_rows():
         source = row["source"]
         assert len(source) > 20, row

@@ -16,32 +16,18 @@ HEADER = [
 
 
 def row(item: str, **cells: Any) -> list[Any]:
-    """Return a sound row of Items but for the cells given, by label."""
     sound = {"Item": item, "Floor": "1", "Breadth [cm]": 40, "Width [cm]": 80, "Height [cm]": 180}
     named = {next(label for label in HEADER if label.startswith(name)): value for name, value in cells.items()}
     return [(sound | named).get(label) for label in HEADER]
 
 
 ROWS = [
-    row("A2", Height="high"),
-    row("A3", Breadth=-40),
-    row("A4", Height=1.8),
-    row("A5", Floor="9"),
-    row("A2"),
-    row("A7", Type="Lokcer", Height=None),
-    row("A8", Axis="Z"),
-    row("A9", Breadth="#DIV/0!"),
-    row("A10", Height="=2*90"),
-    row("A11", Notes="merged with the next"),
-    row("A12"),
-    row("A13", Route="R1"),
-    row("A14", Route="R2"),
-    row("A15", Breadth="1,385"),
-    row("A16", Width=datetime(2024, 3, 1)),
-    row("A17", Breadth=90),
-    row("A18", Quantity=0),
-    row("A19", Quantity=1.5),
-]
+    row("A2", Height="high"), row("A3", Breadth=-40), row("A4", Height=1.8), row("A5", Floor="9"), row("A2"),
+    row("A7", Type="Lokcer", Height=None), row("A8", Axis="Z"), row("A9", Breadth="#DIV/0!"),
+    row("A10", Height="=2*90"), row("A11", Notes="merged with the next"), row("A12"), row("A13", Route="R1"),
+    row("A14", Route="R2"), row("A15", Breadth="1,385"), row("A16", Width=datetime(2024, 3, 1)), row("A17", Breadth=90),
+    row("A18", Quantity=0), row("A19", Quantity=1.5),
+]  # fmt: skip
 FLOOR_ROWS: Sheet = [
     ["Floor", "Elevaton [m]", "PFA X [m/s3]", "Record X"],
     ["1", 0, 4, None],
@@ -80,16 +66,11 @@ EXPECTED = {
 }
 
 
-def faulty(folder: Path) -> Path:
-    path = write(folder, [HEADER, *ROWS], FLOOR_ROWS, Catalogue=TYPES)
+def test_one_run_of_the_command_names_every_fault_and_writes_nothing(tmp_path: Path) -> None:
+    path = write(tmp_path, [HEADER, *ROWS], FLOOR_ROWS, Catalogue=TYPES)
     book = openpyxl.load_workbook(path)
     book["Items"].merge_cells("J11:J12")
     book.save(path)
-    return path
-
-
-def test_one_run_of_the_command_names_every_fault_and_writes_nothing(tmp_path: Path) -> None:
-    path = faulty(tmp_path)
     assert errors_of(path) == EXPECTED
     problems = problems_of(path)
     assert all(one.cell and (one.fix or one.severity == "note") for one in problems)
@@ -134,24 +115,18 @@ def test_sheets_that_are_missing_or_empty(tmp_path: Path, sheets: dict[str, Shee
 REQUIRED: list[tuple[str, list[Any], list[Any], list[str]]] = [
     ("Items", ["Floor", "Breadth [cm]", "Height [cm]"], ["1", 40, 180], ["Item"]),
     ("Items", ["Breadth [cm]", "Height [cm]"], [40, 180], ["Item", "Floor"]),
-    ("Floors", ["PFA X [g]"], [0.5], ["Floor"]),
-    ("Catalogue", ["Source", "Breadth [cm]"], ["here", 40], ["Type"]),
-    ("Places", ["Floor", "X [m]"], ["1", 2], ["Place"]),
-    ("Places", ["Place", "X [m]"], ["Lift", 2], ["Floor"]),
-    ("Routes", ["Segment", "Floor"], ["S1", "1"], ["Route"]),
-    ("Routes", ["Route", "Floor"], ["R1", "1"], ["Segment"]),
-]
+    ("Floors", ["PFA X [g]"], [0.5], ["Floor"]), ("Catalogue", ["Source", "Breadth [cm]"], ["here", 40], ["Type"]),
+    ("Places", ["Floor", "X [m]"], ["1", 2], ["Place"]), ("Places", ["Place", "X [m]"], ["Lift", 2], ["Floor"]),
+    ("Routes", ["Segment", "Floor"], ["S1", "1"], ["Route"]), ("Routes", ["Route", "Floor"], ["R1", "1"], ["Segment"]),
+]  # fmt: skip
 
 
-def test_a_required_column_is_missing(tmp_path: Path) -> None:
+def test_a_column_or_cell_that_is_missing_or_cannot_be_read_is_reported_once(tmp_path: Path) -> None:
     for sheet, header, values, missing in REQUIRED:
         path = write_book(tmp_path / "book.xlsx", {"Items": ITEMS, "Floors": FLOORS, sheet: [header, values]})
         assert errors_of(path) == {
             f"{sheet}!A1: the column {label} is missing. Add it to the header row." for label in missing
         }
-
-
-def test_blank_cells_that_are_required(tmp_path: Path) -> None:
     items = [[*ITEMS[0], "Notes"], ["\u200e", "1", 40, 180], ["A2", None, 40, 180], ["A3", "1", None, None, "new"]]
     assert errors_of(write(tmp_path, items)) == {
         "Items!A2: Item is blank. Fill it in, or delete the row.",
@@ -159,10 +134,7 @@ def test_blank_cells_that_are_required(tmp_path: Path) -> None:
         "Items!C4: Breadth is blank and no Type gives it. Fill it in, or choose a Type that has one.",
         "Items!D4: Height is blank and no Type gives it. Fill it in, or choose a Type that has one.",
     }
-
-
-def test_one_fault_is_reported_once(tmp_path: Path) -> None:
-    """A size that cannot be read is not reported as missing, too; nor is a floor whose PFA cannot be read."""
+    # A size that cannot be read is not reported as missing, too; nor is a floor whose PFA cannot be read.
     path = write(tmp_path, [ITEMS[0], ["A1", "1", "wide", 180]], [FLOORS[0], ["1", "strong"]])
     assert errors_of(path) == {
         "Items!C2: Breadth is the text 'wide', expected a number [cm]. Type the number alone.",

@@ -133,22 +133,10 @@ ERRORS: Mapping[str, tuple[dict[str, dict[str, Any]], str]] = {
 }  # fmt: skip
 
 
-def test_errors_by_cell_each_once(tmp_path: Path) -> None:
+def test_errors_by_cell_each_once_sheet_by_sheet_and_row_by_row(tmp_path: Path) -> None:
     for changes, expected in ERRORS.values():
         assert [str(problem) for problem in problems_of(book(tmp_path, **changes))] == [expected]
-
-
-def test_an_item_whose_route_is_on_other_floors(tmp_path: Path) -> None:
-    lane = ("Routes", ["Lane", "yard", None, "Lower", "Door", 1.5, 0.9])
-    own = {"Route": "lane", "Segment": None}
-    assert errors_of(book(tmp_path, lane, B1=own | {"Floor": "2"})) == {
-        "Items!H2: Route 'Lane' is not on floor '2' but on '1'. Choose one of the item's floor, or correct the Floor."
-    }
-    assert sound(tmp_path, lane, B1=own).items[0].route == "Lane"
-
-
-def test_errors_are_told_sheet_by_sheet_and_row_by_row(tmp_path: Path) -> None:
-    """What cannot be read is found before what does not fit together, and Routes is checked before Items; a warning comes last."""
+    # What cannot be read is found before what does not fit together, and Routes is checked before Items; a warning comes last.
     more = [("Routes", ["Way", "side", "9", None, None, 1.2, 0.9]), ("Items", ["B1", "1", "wide", 180, *[None] * 6])]
     problems = problems_of(book(tmp_path, *more, hall={"To": "Yard"}, B1={"Segment": "lobby"}, Door={"X": "far"}))
     assert [one.place for one in problems] == [
@@ -157,7 +145,22 @@ def test_errors_are_told_sheet_by_sheet_and_row_by_row(tmp_path: Path) -> None:
     ]  # fmt: skip
 
 
-def test_without_the_sheet_of_places_or_of_routes(tmp_path: Path) -> None:
+def test_names_are_spelt_as_where_they_stand_first_and_routes_are_of_the_items_floor(
+    tmp_path: Path,
+) -> None:
+    lane = ("Routes", ["Lane", "yard", None, "Lower", "Door", 1.5, 0.9])
+    own = {"Route": "lane", "Segment": None}
+    assert errors_of(book(tmp_path, lane, B1=own | {"Floor": "2"})) == {
+        "Items!H2: Route 'Lane' is not on floor '2' but on '1'. Choose one of the item's floor, or correct the Floor."
+    }
+    assert sound(tmp_path, lane, B1=own).items[0].route == "Lane"
+    inventory = sound(tmp_path, hall={"Route": "WAY ", "From": "lower"}, B1={"Route": "way", "Segment": "Hall"})
+    assert {one.route for one in inventory.routes} == {"Way"}
+    assert inventory.routes[2].start == "Lower"
+    assert (inventory.items[0].route, inventory.items[0].segment) == ("Way", "hall")
+
+
+def test_a_missing_sheet_or_column_is_told_once(tmp_path: Path) -> None:
     more = "named in 3 rows, but there is no Places sheet. Add the sheet, or clear the column."
     assert errors_of(book(tmp_path, without="Places")) == {
         f"Routes!D2: From 'Office' and others are {more}", f"Routes!E2: To 'Upper' and others are {more}",
@@ -165,19 +168,9 @@ def test_without_the_sheet_of_places_or_of_routes(tmp_path: Path) -> None:
     assert errors_of(book(tmp_path, without="Routes")) == {
         "Items!H2: Route 'Way' is named, but there is no Routes sheet. Add the sheet, or clear the column."
     }
-
-
-def test_a_missing_column_is_not_told_in_every_row(tmp_path: Path) -> None:
     sheets = {"Places": [["Floor", "X [m]"], ["1", 2]], "Routes": [HEADS["Routes"], *ROUTES.values()]}
     path = write(tmp_path, [HEADS["Items"], *ITEMS.values()], TWO_FLOORS, **sheets)
     assert errors_of(path) == {"Places!A1: the column Place is missing. Add it to the header row."}
-
-
-def test_names_are_spelt_as_where_they_stand_first(tmp_path: Path) -> None:
-    inventory = sound(tmp_path, hall={"Route": "WAY ", "From": "lower"}, B1={"Route": "way", "Segment": "Hall"})
-    assert {one.route for one in inventory.routes} == {"Way"}
-    assert inventory.routes[2].start == "Lower"
-    assert (inventory.items[0].route, inventory.items[0].segment) == ("Way", "hall")
 
 
 JOINS = "the segment is evaluated, but joins nothing in the network. Fill in the other, or clear both."
@@ -230,6 +223,11 @@ def test_warnings_by_cell_each_once(tmp_path: Path) -> None:
     for changes, expected in WARNINGS.values():
         inventory = sound(tmp_path, **changes)
         assert [f"{one.severity} {one}" for one in inventory.problems] == [f"warning {expected}"]
+    for more, changes, told in MORE:
+        assert {f"{one.severity} {one}" for one in sound(tmp_path, *more, **changes).problems} == told
+    routes: Sheet = [["Route", "Segment"], ["R1", "a"], ["R1", "b"]]
+    path = write(tmp_path, [HEADS["Items"], ITEMS["B2"]], TWO_FLOORS, Routes=routes)
+    assert [str(problem) for problem in read_inventory(path).problems] == [f"Routes!A1: {CLEAR}"]
 
 
 MORE: list[tuple[list[tuple[str, list[Any]]], dict[str, dict[str, Any]], set[str]]] = [
@@ -252,17 +250,6 @@ MORE: list[tuple[list[tuple[str, list[Any]]], dict[str, dict[str, Any]], set[str
        {"note Routes!E2: 'Upper' has no position in Places: pieces count beside this segment only where they name it. "
         "Fill in its X and Y."}) for blank in ({"X": None, "Y": None}, {"Y": None})),
 ]  # fmt: skip
-
-
-def test_rows_that_are_added_are_told_of_once(tmp_path: Path) -> None:
-    for more, changes, expected in MORE:
-        assert {f"{one.severity} {one}" for one in sound(tmp_path, *more, **changes).problems} == expected
-
-
-def test_no_column_of_clear_width_is_said_once(tmp_path: Path) -> None:
-    routes: Sheet = [["Route", "Segment"], ["R1", "a"], ["R1", "b"]]
-    path = write(tmp_path, [HEADS["Items"], ITEMS["B2"]], TWO_FLOORS, Routes=routes)
-    assert [str(problem) for problem in read_inventory(path).problems] == [f"Routes!A1: {CLEAR}"]
 
 
 NO_PLAN = "no segment of that floor has both its places placed, and"
@@ -300,14 +287,13 @@ UNREAD: list[tuple[str, str, Any]] = [
 ]  # fmt: skip
 
 
-def test_a_cell_that_cannot_be_read_is_told_once(tmp_path: Path) -> None:
+def test_a_cell_that_cannot_be_read_is_told_once_and_pieces_beside_routes_need_a_width(
+    tmp_path: Path,
+) -> None:
     for row, header, value in UNREAD:
         assert len(problems_of(book(tmp_path, **{row: {header: value}}))) == 1, (row, header)
     nameless = problems_of(book(tmp_path, Office={"Place": None}))  # a segment names a place that is not there
     assert [problem.place for problem in nameless] == ["Places!A2", "Routes!D2"]
-
-
-def test_a_piece_that_may_reach_a_route_is_to_have_a_width(tmp_path: Path) -> None:
     others = dict.fromkeys(("X", "Y", "Route", "Segment", "Edge", "Width"))
     message = "Items!K2: Width is blank and no Type gives it: the piece is taken as wide as its Breadth"
     for kept, told in ((("X", "Y"), [True]), (("Route", "Segment", "Edge"), [True]), ((), [])):

@@ -1,7 +1,5 @@
 """The sheet Costs: in the empty workbook, in any language, and every fault named by its cell."""
 
-from typing import Any
-
 import openpyxl
 import pytest
 
@@ -9,36 +7,25 @@ from assess.cli.command_new import write_new_workbook
 from assess.details import DETAILS
 from assess.errors import WorkbookError
 from assess.i18n import LANGUAGES, load_catalogue
-from assess.workbook.read import read_inventory
 from assess.workbook.schema import COSTS, LISTS
-from tests.workbook.books import write_book
+from tests.workbook.books import Sheet, read
 
-FLOORS = [["Floor", "PFA X [g]"], ["1", 0.5]]
-ITEMS = [["Item", "Floor", "Breadth [cm]", "Height [cm]"], ["A1", "1", 40, 180]]
+HEADER = ["Detail", "Unit cost", "Source"]
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
 
 
-def read(folder, *rows):
-    sheets: dict[str, Any] = {"Floors": FLOORS, "Items": ITEMS}
-    sheets["Costs"] = [["Detail", "Unit cost", "Source"], *rows]
-    return read_inventory(write_book(folder / "w.xlsx", sheets))
-
-
-def test_what_is_wrong_is_an_error_at_its_cell(tmp_path):
+def test_what_is_wrong_is_an_error_and_a_detail_unknown_or_never_priced_a_warning_at_its_cell(tmp_path):
     """Numbers that are wrong: test_values."""
-    rows = [["base angle", 4], ["Base angle", 5], [None, 4], ["bracket", 4], ["L-bracket to studs", 5]]
+    rows: Sheet = [["base angle", 4], ["Base angle", 5], [None, 4], ["bracket", 4], ["L-bracket to studs", 5]]
     with pytest.raises(WorkbookError) as caught:
-        read(tmp_path, *rows)
+        read(tmp_path, Costs=[HEADER, *rows])
     assert {(one.cell, one.message) for one in caught.value.problems} == {
         ("A3", "duplicate Detail 'Base angle', also in A2."),
         ("A4", "Detail is blank."),
         ("A6", "Detail 'L-bracket to studs' is the same as that in A5."),
     }
-
-
-def test_a_detail_that_is_unknown_or_never_priced_is_a_warning_at_its_cell(tmp_path):
-    inventory = read(tmp_path, ["glue", 1], *([str(one.title), 7] for one in DETAILS.values()))
+    inventory = read(tmp_path, Costs=[HEADER, ["glue", 1], *([str(one.title), 7] for one in DETAILS.values())])
     found = {one.cell: one for one in inventory.problems if one.sheet == "Costs"}
     assert {one.severity for one in found.values()} == {"warning"}
     fix = found.pop("A2").fix
@@ -61,6 +48,6 @@ def test_the_empty_workbook_offers_every_detail_and_knows_it_again(tmp_path, lan
     assert "A2" in next(one for one in page.data_validations.dataValidation if one.formula1 == "list_detail").sqref
     area = book.defined_names["list_detail"].attr_text.split("!")[1]
     assert [row[0].value for row in lists[area.replace("$", "")]] == titles
-    inventory = read(tmp_path, *([title, 7] for title in titles))
+    inventory = read(tmp_path, Costs=[HEADER, *([title, 7] for title in titles)])
     assert len(inventory.costs) == len(DETAILS)
     assert not [one for one in inventory.problems if one.sheet == "Costs" and "is none that" in one.message]

@@ -16,24 +16,16 @@ from assess.workbook.read import read_inventory
 from assess.workbook.schema import ITEMS, LIVE, SHEETS, USES
 from assess.workbook.template import write_workbook
 from tests.cli.calling import error, run
+from tests.recalculate import evaluate
 from tests.workbook.test_live import AGREEMENT, by_formualizer, poison
 
 
 @pytest.fixture(scope="module", params=["si", "imperial"])
-def units(request):
-    return request.param
-
-
-@pytest.fixture(scope="module")
-def path(tmp_path_factory, units):
+def path(request, tmp_path_factory):
+    units = request.param
     path = tmp_path_factory.mktemp(units) / "example.xlsx"
     write_workbook(path, with_live(example_content(units), units), units)
     return path
-
-
-@pytest.fixture(scope="module")
-def inventory(path):
-    return read_inventory(path)
 
 
 def same(one: Any, other: Any) -> bool:
@@ -54,18 +46,13 @@ def test_imperial_rows_are_the_si_rows_converted(sheet):
 
 
 def test_stored_live_values_are_the_programs_and_those_of_a_spreadsheet_engine(path):
-    formualizer = pytest.importorskip("formualizer")
     page = openpyxl.load_workbook(path, data_only=True)["Items"]
-    book = formualizer.load_workbook(str(path))
-    book.evaluate_all()
+    book = evaluate(path)
     for row, values in enumerate(live_values(read_inventory(path)), 2):
         for label, value in zip(LIVE, values, strict=True):
             at = PLACES["Items", label] + 1
             assert same(page.cell(row, at).value, value), (row, label)
             assert same(book.get_value("Items", row, at), value), (row, label)
-
-
-# ---------------------------------------------------------------- rooms of each use
 
 
 def new(folder, use, units="si", language="en", *, example=False):
@@ -75,7 +62,6 @@ def new(folder, use, units="si", language="en", *, example=False):
 
 
 def stored(path):
-    """Return the live values that the workbook holds, by row of Items."""
     book = openpyxl.load_workbook(path, data_only=True)
     places = [PLACES[ITEMS.name, label] for label in LIVE]
     rows = book.worksheets[3].iter_rows(min_row=2, values_only=True)

@@ -24,7 +24,7 @@ def _notes(inventory):
     return [(one.place, one.message) for one in inventory.problems if one.severity == "note"]
 
 
-def test_a_shakemap_beside_the_workbook_gives_the_ground_motion(tmp_path):
+def test_a_shakemap_beside_the_workbook_and_its_uncertainties_give_the_ground_motion(tmp_path):
     inventory = assess.read_inventory(_write(tmp_path, shakemap="grid.xml", **PLACE))
     assert inventory.errors == ()
     assert inventory.site_ground.pga == pytest.approx(0.1525 * GRAVITY, rel=1e-3)
@@ -32,10 +32,6 @@ def test_a_shakemap_beside_the_workbook_gives_the_ground_motion(tmp_path):
     assert inventory.files == {"grid.xml": inventory.site_ground.sha256}
     for known in ({"ground_pga": 0.3}, {"sds": 0.7}):  # they come before it
         assert assess.read_inventory(_write(tmp_path, shakemap="grid.xml", **PLACE, **known)).site_ground is None
-
-
-def test_the_uncertainties_beside_it_are_read_and_named(tmp_path):
-    """Also where the files are handed over as bytes."""
     files = {path.name: path.read_bytes() for path in EPICENTRE.parent.iterdir()}
     for name, data in files.items():
         (tmp_path / name).write_bytes(data)
@@ -59,7 +55,7 @@ def test_what_is_wrong_is_told_of_its_cell(tmp_path):
         assert [one.place for one in caught.value.problems if one.severity == "error"] == ["Building!B24"]
 
 
-def test_a_ground_motion_of_the_run_takes_the_place_of_the_workbooks_own(tmp_path):
+def test_a_ground_motion_of_the_run_takes_the_place_of_the_workbooks_own_or_completes_it(tmp_path):
     own = {"ground_pga": 0.5, "ground_pgv": 80, "sds": 1.0, "shaking": "MMI X, extreme", "shakemap": "gone.xml"}
     inventory = assess.read_inventory(_write(tmp_path, **PLACE, **own), ground=read_shakemap(BAY))
     building = inventory.building
@@ -70,10 +66,7 @@ def test_a_ground_motion_of_the_run_takes_the_place_of_the_workbooks_own(tmp_pat
     assert inventory.site_ground.pga == pytest.approx(0.1525 * GRAVITY, rel=1e-3)
     labels = "Ground PGA, SDS, Ground PGV, ShakeMap file, Shaking are not used: the ground motion of grid.xml takes"
     assert _notes(inventory) == [("Building!B21", f"{labels} their place.")]
-
-
-def test_a_workbook_that_lacks_only_shaking_is_then_complete(tmp_path):
-    """Where the place of the building is known."""
+    # Where the place of the building is known.
     path, ground = _write(tmp_path, **PLACE), read_shakemap(BAY)
     lacking = "neither Ground PGA nor Ground PGV nor SDS nor a ShakeMap file nor Shaking"
     with pytest.raises(WorkbookError, match=lacking):
@@ -87,32 +80,26 @@ def test_a_workbook_that_lacks_only_shaking_is_then_complete(tmp_path):
         assess.read_inventory(_write(tmp_path, latitude=30, longitude=-120), ground=ground)
 
 
-def test_values_from_an_index_fill_blanks_only(tmp_path):
+def test_values_from_an_index_fill_blanks_only_and_are_checked_as_those_of_the_sheet(tmp_path):
     path = _write(tmp_path, building="Town hall", ground_pga=0.2)
     given = {"building": "Other", "latitude": 37.8, "Longitude [deg]": -122.4, "height": 40, "ground_pga": 9}
     inventory = assess.read_inventory(path, building=given)
     building = inventory.building
     assert (building.building, building.latitude, building.longitude, building.height) == (
-        "Town hall",
-        37.8,
-        -122.4,
-        40,
-    )
+        "Town hall", 37.8, -122.4, 40,
+    )  # fmt: skip
     assert building.ground_pga == pytest.approx(0.2 * GRAVITY)
     labels = "Latitude, Longitude, Height are blank in the workbook"
     assert _notes(inventory) == [("Building", f"{labels}: the values come from the index.")]
-
-
-def test_values_from_an_index_are_checked_as_those_of_the_sheet(tmp_path):
     path = _write(tmp_path, ground_pga=0.2)
-    for given, match in (
+    for wrong, match in (
         ({"latitude": 137.8}, "of the index: Latitude is 137.8"),
         ({"height": "tall"}, "of the index: Height is the text 'tall'"),
         ({"storeys": 2.5}, "of the index: Storeys"),
         ({"latitude": 37.8}, "Latitude is given without Longitude"),
     ):
         with pytest.raises(WorkbookError, match=match):
-            assess.read_inventory(path, building=given)
+            assess.read_inventory(path, building=wrong)
     rows = {"Items": [{"item": "A", "floor": "1", "breadth": 30, "height": 200}], "Floors": FLOORS}
     found = assess.read_inventory(rows, building={**PLACE, "building": "Shed"}, ground=read_shakemap(BAY))
     assert (found.building.building, found.site_ground is None) == ("Shed", False)

@@ -57,13 +57,8 @@ def hospital(folder: Path) -> Path:
     return path
 
 
-@pytest.fixture(scope="module")
-def typed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return hospital(tmp_path_factory.mktemp("hospital"))
-
-
-def test_a_hospital_typed_with_every_habit_is_read_with_notes_and_no_error(typed: Path) -> None:
-    inventory = read_inventory(typed)
+def test_a_hospital_typed_with_every_habit_is_read_with_notes_and_no_error(tmp_path: Path) -> None:
+    inventory = read_inventory(hospital(tmp_path))
     assert len(inventory.items) == 54
     by_name = {one.item: one for one in inventory.items}
     first, last = by_name["W1-0"], by_name["W2-x"]
@@ -138,14 +133,10 @@ def read_merged(folder: Path, merged: str, items: Sheet, floors: Sheet = FLOORS,
     return read_inventory(path)
 
 
-def test_merged_cells_in_headings_and_blank_rows_are_fine(tmp_path: Path) -> None:
+def test_merged_cells_are_fine_in_headings_and_blank_rows_and_an_error_in_entries_and_headers(tmp_path: Path) -> None:
     items = [ITEMS[0], ["Ground floor"], ITEMS[1], [None, "Upper floor"], [], ["A2", "1", 40, 180]]
     for merged in ("A2:D2", "A4:D5", "B4:C4"):
         assert [one.row for one in read_merged(tmp_path, merged, items).items] == [3, 6]
-
-
-def test_merged_cells_in_entries_and_headers_are_an_error(tmp_path: Path) -> None:
-    """And what they leave blank is none of its own."""
     items = [ITEMS[0], ITEMS[1], ["A2", "1", 40, 180], ["Upper floor"], ["A3", "1", 40, 180]]
     for merged in ("A2:A3", "C1:D1", "B2:B4", "C3:D3", "D2:D4"):
         with pytest.raises(WorkbookError, match=f"Items!{merged}: cells are merged inside the table") as caught:
@@ -154,18 +145,15 @@ def test_merged_cells_in_entries_and_headers_are_an_error(tmp_path: Path) -> Non
         assert errors == [merged, *(["A1"] if merged == "C1:D1" else [])]  # a header that is gone
 
 
-def test_a_floor_by_its_name_alone_is_a_heading_only_where_it_spans_columns(tmp_path: Path) -> None:
+def test_rows_that_may_be_entries_are_no_headings_unless_merged(tmp_path: Path) -> None:
     floors = [*FLOORS, ["Upper floors"], ["2", 0.5]]
     assert errors_of(write(tmp_path, floors=floors))
     assert [one.floor for one in read_merged(tmp_path, "A3:B3", ITEMS, floors, "Floors").floors] == ["1", "2"]
-
-
-def test_rows_that_may_be_entries_are_no_headings(tmp_path: Path) -> None:
     for row in ([None, None, 40], ["12"], ["A2", "1"], [None, None, None, None, "see above"], ["#REF!"]):
         assert errors_of(write(tmp_path, [[*ITEMS[0], "Notes"], [*ITEMS[1], None], row])), row
 
 
-def test_hidden_columns_and_sheets_are_noted(tmp_path: Path) -> None:
+def test_hidden_columns_and_sheets_are_noted_and_an_earlier_label_is_read(tmp_path: Path) -> None:
     path = write(
         tmp_path, [[*ITEMS[0], "Friction", "Axis"], [*ITEMS[1], 0.4, None]], Places=[["Place", "Floor"], ["P", "1"]]
     )
@@ -179,12 +167,21 @@ def test_hidden_columns_and_sheets_are_noted(tmp_path: Path) -> None:
         "Items!E1: the hidden column Friction is read as well.", "Floors!A2: hidden row 2 is read as well.",
         "Places: the sheet is hidden; it is read as well.",
     }  # fmt: skip
+    for label in ("Plan image", "plan  IMAGE", "Immagine della pianta"):
+        assert errors_of(write(tmp_path, floors=[["Floor", "PFA X [g]", label], ["1", 0.5, "none.png"]])) == {
+            "Floors!C2: the file 'none.png' was not found next to the workbook. Check the name, or copy the file there."
+        }
+    assert errors_of(write(tmp_path, floors=[["Floor", "PFA X [g]", "Plan", "Plan image"], ["1", 0.5]])) == {
+        "Floors!D1: duplicate column Plan, also in C1. Delete one of them."
+    }
 
 
 TYPES: Sheet = [["Type", "Height [cm]"], ["Locker", 180]]
 
 
-def test_an_unknown_type_is_a_warning_where_its_sizes_are_typed(tmp_path: Path) -> None:
+def test_an_unknown_type_is_a_warning_beside_typed_sizes_and_else_an_error(
+    tmp_path: Path,
+) -> None:
     header = [*ITEMS[0], "Type"]
     inventory = read(tmp_path, [header, ["A1", "1", 40, 180, "Lokcer"]], Catalogue=TYPES)
     assert (inventory.items[0].type, inventory.items[0].height, inventory.errors) == ("Lokcer", 1.8, ())
@@ -197,10 +194,7 @@ def test_an_unknown_type_is_a_warning_where_its_sizes_are_typed(tmp_path: Path) 
         "Items!E2: Type 'Bed' and others are named in 2 rows, but there is no Catalogue sheet; the sizes typed in those "
         "rows are used. Add the sheet, or clear the column."
     }
-
-
-def test_an_unknown_type_is_an_error_where_a_size_is_missing(tmp_path: Path) -> None:
-    """The width is missing where the piece may block a route."""
+    # The width is missing where the piece may block a route.
     header = ["Item", "Floor", "Breadth [cm]", "Height [cm]", "Type", "X [m]", "Y [m]", "Edge distance [m]"]
     rows = [
         ["A1", "1", 40, None, "Bed"],
@@ -210,13 +204,3 @@ def test_an_unknown_type_is_an_error_where_a_size_is_missing(tmp_path: Path) -> 
     found = errors_of(write(tmp_path, [header, *rows], Catalogue=TYPES))
     for row in (2, 3, 4):
         assert any(f"E{row}: Type 'Bed' is not in the Catalogue sheet. Choose" in one for one in found)
-
-
-def test_an_earlier_label_is_read(tmp_path: Path) -> None:
-    for label in ("Plan image", "plan  IMAGE", "Immagine della pianta"):
-        assert errors_of(write(tmp_path, floors=[["Floor", "PFA X [g]", label], ["1", 0.5, "none.png"]])) == {
-            "Floors!C2: the file 'none.png' was not found next to the workbook. Check the name, or copy the file there."
-        }
-    assert errors_of(write(tmp_path, floors=[["Floor", "PFA X [g]", "Plan", "Plan image"], ["1", 0.5]])) == {
-        "Floors!D1: duplicate column Plan, also in C1. Delete one of them."
-    }

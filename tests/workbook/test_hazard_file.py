@@ -17,9 +17,7 @@ ITEMS = [{"item": "a", "floor": "1", "breadth": 40, "width": 90, "height": 180}]
 
 
 def workbook(folder: Path, **building: Any) -> Path:
-    path = folder / "w.xlsx"
-    write_sheets(path, {"Building": [building], "Floors": FLOORS, "Items": ITEMS})
-    return path
+    return write_sheets(folder / "w.xlsx", {"Building": [building], "Floors": FLOORS, "Items": ITEMS})
 
 
 def fault(folder: Path, **building: Any):
@@ -29,7 +27,7 @@ def fault(folder: Path, **building: Any):
     return one
 
 
-def test_it_is_read_and_its_hash_kept(tmp_path):
+def test_it_is_read_its_hash_kept_and_of_many_sites_the_nearest_is_taken(tmp_path):
     """From beside the workbook, or handed over as bytes."""
     data = write_hazard(tmp_path, points=7).read_bytes()
     path = workbook(tmp_path, hazard="hazard.csv")
@@ -38,9 +36,6 @@ def test_it_is_read_and_its_hash_kept(tmp_path):
     assert inventory.files == {"hazard.csv": hashlib.sha256(data).hexdigest()}
     assert inventory == assess.read_inventory(path)
     assert assess.read_inventory(path.read_bytes(), records={"hazard.csv": data}).hazard.pga.size == 7
-
-
-def test_of_many_sites_the_nearest_is_taken_and_a_far_one_is_warned_of(tmp_path):
     (tmp_path / "map.csv").write_bytes(SITES.read_bytes())
     for latitude, is_far in ((0.0, False), (5.0, True)):
         inventory = assess.read_inventory(workbook(tmp_path, hazard="map.csv", latitude=latitude, longitude=0.05))
@@ -49,7 +44,7 @@ def test_of_many_sites_the_nearest_is_taken_and_a_far_one_is_warned_of(tmp_path)
         assert [(one.severity, "km from the building" in one.message) for one in told] == [("warning", True)] * is_far
 
 
-def test_a_file_that_cannot_be_used_is_an_error_at_its_cell(tmp_path):
+def test_a_file_that_cannot_be_used_or_has_many_sites_of_no_known_place_is_an_error_at_its_cell(tmp_path):
     """What else may be wrong in it: tests/test_hazard.py."""
     (tmp_path / "bad.csv").write_text("pga_g,annual_rate\n0.1,0.01\n0.2,475\n", encoding="utf-8")
     for name, words in (
@@ -59,9 +54,6 @@ def test_a_file_that_cannot_be_used_is_an_error_at_its_cell(tmp_path):
         assert (one.sheet, one.cell[0], bool(one.fix)) == ("Building", "B", True)
         assert words in one.message
         assert name in one.message
-
-
-def test_many_sites_need_the_buildings_place(tmp_path):
     lines = SITES.read_text(encoding="utf-8").splitlines()
     (tmp_path / "map.csv").write_text("\n".join([*lines, "1" + lines[-1]]), encoding="utf-8")
     assert "latitude and longitude are needed" in fault(tmp_path, hazard="map.csv").message

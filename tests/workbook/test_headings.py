@@ -10,7 +10,7 @@ import pytest
 from assess.i18n import LANGUAGES, gettext, load_catalogue, speaking
 from assess.workbook.lists import list_columns
 from assess.workbook.names import translate, translate_choices
-from assess.workbook.schema import CLASS, LISTS, SHEETS, Sheet
+from assess.workbook.schema import CLASS, LISTS, SHEETS
 from assess.workbook.template import CHECKED, ROWS, describe, write_workbook
 from tests.workbook.books import read_part
 
@@ -42,20 +42,14 @@ def pages(book: Any) -> list[Any]:
     return list(book.worksheets[: len(SHEETS) + 1])
 
 
-def _checks(page: Any, sheet: Sheet) -> dict[str, Any]:
-    """Return the check of each column, by field name."""
-    found, names = {}, list_columns(sheet)
-    for check in page.data_validations.dataValidation:
-        first = next(iter(check.sqref.ranges))
-        found[names[(first.min_row if sheet.layout == "form" else first.min_col) - 1]] = check
-    return found
-
-
 def test_every_column_has_a_message_and_choices_drop_down(book: Any, code: str) -> None:
     with speaking(load_catalogue(code)):
         names = {sheet.name: translate(sheet, code).name for sheet in SHEETS}
         for sheet in SHEETS:
-            found = _checks(book[names[sheet.name]], sheet)
+            found, columns = {}, list_columns(sheet)  # the check of each column, by field name
+            for check in book[names[sheet.name]].data_validations.dataValidation:
+                first = next(iter(check.sqref.ranges))
+                found[columns[(first.min_row if sheet.layout == "form" else first.min_col) - 1]] = check
             assert [name for name in found if name != CLASS] == [column.name for column in sheet.columns]
             for column in sheet.columns:
                 check = found[column.name]
@@ -78,7 +72,7 @@ def test_every_column_has_a_message_and_choices_drop_down(book: Any, code: str) 
                     assert (target, area[:6]) == (names[column.source], "$A$2:$")
 
 
-def test_no_header_of_a_table_is_cut(pages: list[Any]) -> None:
+def test_no_header_label_or_help_is_cut(pages: list[Any]) -> None:
     for sheet, page in zip(SHEETS, pages[1:], strict=True):
         if sheet.layout == "form":
             continue
@@ -86,10 +80,7 @@ def test_no_header_of_a_table_is_cut(pages: list[Any]) -> None:
             width, words = _width(page, cell.column), [LETTER * len(word) for word in str(cell.value).split()]
             assert max(words) <= width, cell.value
             assert (page.row_dimensions[1].height or LINE) >= LINE * math.ceil(sum(words) / width), cell.value
-
-
-def test_no_label_or_help_is_cut(pages: list[Any]) -> None:
-    """Of the lines of Building, and of Help."""
+    # Of the lines of Building, and of Help.
     for page, labels, helps in ((pages[1], 1, 3), (pages[0], 2, 3)):
         for row in range(1, page.max_row + 1):
             label, text = (str(page.cell(row, at).value or "") for at in (labels, helps))

@@ -2,7 +2,6 @@
 
 import random
 import re
-import zipfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -27,6 +26,7 @@ from tests.workbook.raw import (
     sheet_of,
     zip_bytes,
 )
+from tests.workbooks import parts_of
 
 LAUGHS = "<!DOCTYPE x [" + '<!ENTITY a0 "ha">' + "".join(
     f'<!ENTITY a{n} "{f"&a{n - 1};" * 10}">' for n in range(1, 10)
@@ -64,33 +64,39 @@ def test_damaged_xml(tmp_path: Path) -> None:
         )
 
 
-def test_relations_that_lead_outside(tmp_path: Path) -> None:
+def test_relations_that_lead_outside_of_every_spelling_and_to_one_sheet_under_two_names(tmp_path: Path) -> None:
     for target in ("../../x.xml", "http://127.0.0.1:9/sheet.xml", "file:///etc/passwd", "//h/s.xml"):
         for mode in ("", ' TargetMode="External"'):
             change = replace('Target="/xl/worksheets/sheet1.xml"', f'Target="{target}"{mode}')
             (error,) = errors_of(change_parts(write(tmp_path), {RELATIONS: change}))
             assert "Items: the sheet is missing." in error or "is damaged" in error
-
-
-def test_relations_of_every_spelling(tmp_path: Path) -> None:
     for target in ("worksheets/sheet1.xml", "../xl/worksheets/sheet1.xml", "./worksheets/sheet1.xml"):
         path = change_parts(write(tmp_path), {RELATIONS: replace("/xl/worksheets/sheet1.xml", target)})
         assert len(read_inventory(path).items) == 1
+    path = write(tmp_path)
+    parts = parts_of(path)
+    other = parts[WORKBOOK].replace(b'r:id="rId1"', b'r:id="rId9"').replace(b'r:id="rId2"', b'r:id="rId1"')
+    other = other.replace(b'r:id="rId9"', b'r:id="rId2"')
+    types = replace('PartName="/xl/workbook.xml"', 'PartName="/xl/other.xml"')
+    change_parts(path, {"xl/other.xml": other, "xl/_rels/other.xml.rels": parts[RELATIONS], TYPES: types})
+    assert errors_of(path) == {
+        "the workbook is damaged: xl/other.xml stands for xl/workbook.xml. Open it in Excel and save it again."
+    }
 
 
-def test_sheet_that_is_a_chart(tmp_path: Path) -> None:
+def test_a_sheet_that_is_a_chart_a_dimension_that_lies_and_deep_xml(tmp_path: Path) -> None:
     book = openpyxl.Workbook()
     book.create_chartsheet("Items")
     book.save(tmp_path / "book.xlsx")
     missing = "the sheet is missing. Add it, or start from a workbook made with `assess new`."
     assert errors_of(tmp_path / "book.xlsx") == {f"Items: {missing}", f"Floors: {missing}"}
-
-
-def test_dimension_that_lies(tmp_path: Path) -> None:
     items = [ITEMS[0], *([f"A{n}", "1", 40, 180] for n in range(5))]
     path = write(tmp_path, items)
     change_parts(path, {SHEET: replace('<dimension ref="A1:D6"', '<dimension ref="A1"')})
     assert len(read_inventory(path).items) == 5
+    change_parts(write(tmp_path), {STYLES: b"<a>" * 100_000 + b"</a>" * 100_000})
+    text = read_apart(tmp_path)["book"]
+    assert text == "1 items" or "is damaged" in text
 
 
 ROWS_BELOW = "a value far below the table; at most 100,000 rows are read. Delete the rows below the table."
@@ -156,16 +162,10 @@ def test_sheets_that_are_large_or_lie_about_it(tmp_path: Path) -> None:
     assert found == expected
 
 
-def test_deep_xml(tmp_path: Path) -> None:
-    change_parts(write(tmp_path), {STYLES: b"<a>" * 100_000 + b"</a>" * 100_000})
-    text = read_apart(tmp_path)["book"]
-    assert text == "1 items" or "is damaged" in text
-
-
 ORDER = [(2, 5, 3), (2, 2), (0,), (9_999_999,)]
 
 
-def test_rows_out_of_order(tmp_path: Path) -> None:
+def test_rows_out_of_order_or_without_a_number_and_another_encoding_are_damage(tmp_path: Path) -> None:
     """Openpyxl's quick reader leaves such rows out without a word."""
     for numbers in ORDER:
         rows = "".join(f'<row r="{n}"><c r="A{n}" t="inlineStr"><is><t>A{n}</t></is></c></row>' for n in numbers)
@@ -173,54 +173,29 @@ def test_rows_out_of_order(tmp_path: Path) -> None:
         assert errors_of(path) == {
             f"the workbook is damaged: the rows of {SHEET} are out of order. Open it in Excel and save it again."
         }
-
-
-def test_row_numbers_that_are_none(tmp_path: Path) -> None:
     for number in ("x", "-3", "1e3", "99999999", ""):
         row = f'<row r="{number}"><c t="inlineStr"><is><t>A2</t></is></c></row>'.encode()
         assert errors_of(add_part(write(tmp_path), SHEET, sheet_of(iter([TABLE, row])))) == {
             f"the workbook is damaged: {SHEET} has a row numbered {number}. Open it in Excel and save it again."
         }
-
-
-def test_sheet_in_another_encoding(tmp_path: Path) -> None:
     path = change_parts(write(tmp_path), {SHEET: lambda data: data.decode().encode("utf-16")})
     assert errors_of(path) == {
         f"the workbook is damaged: {SHEET} is not written in UTF-8. Open it in Excel and save it again."
     }
 
 
-def test_one_sheet_under_two_names(tmp_path: Path) -> None:
-    """The workbook that openpyxl reads is not the one at the usual place."""
-    path = write(tmp_path)
-    with zipfile.ZipFile(path) as archive:
-        other = archive.read(WORKBOOK).replace(b'r:id="rId1"', b'r:id="rId9"').replace(b'r:id="rId2"', b'r:id="rId1"')
-    other = other.replace(b'r:id="rId9"', b'r:id="rId2"')
-    types = replace('PartName="/xl/workbook.xml"', 'PartName="/xl/other.xml"')
-    with zipfile.ZipFile(path) as archive:
-        links = archive.read(RELATIONS)
-    change_parts(path, {"xl/other.xml": other, "xl/_rels/other.xml.rels": links, "[Content_Types].xml": types})
-    assert errors_of(path) == {
-        "the workbook is damaged: xl/other.xml stands for xl/workbook.xml. Open it in Excel and save it again."
-    }
-
-
 SLOW: dict[str, tuple[bytes, bytes, int, bytes]] = {
-    "attributes": (b"<row ", b' r="A1"', 1_900_000, b""),
-    "cells": (b'<row r="3">', b"<c r='A1' ", 1_900_000, b""),
+    "attributes": (b"<row ", b' r="A1"', 1_900_000, b""), "cells": (b'<row r="3">', b"<c r='A1' ", 1_900_000, b""),
     "formulas": (b'<row r="3">', b'<c r="A1"><f>', 1_900_000, b""),
-    "blanks": (b'<row r="3"><c r="A3">', b" ", 1_900_000, b"<f>"),
-    "rows": (b"", b"<row", 1_900_000, b""),
-    "a long tag": (b'<row r="', b"1", 40_000_000, b""),
-    "a deep tree": (b"", b"<a>", 40_000_000, b""),
-}
+    "blanks": (b'<row r="3"><c r="A3">', b" ", 1_900_000, b"<f>"), "rows": (b"", b"<row", 1_900_000, b""),
+    "a long tag": (b'<row r="', b"1", 40_000_000, b""), "a deep tree": (b"", b"<a>", 40_000_000, b""),
+}  # fmt: skip
 """A start, what is repeated, so many bytes of it, and an end."""
 
 
 @pytest.mark.slow
 def test_bytes_made_to_be_slow(tmp_path: Path) -> None:
-    with zipfile.ZipFile(write(tmp_path)) as archive:
-        parts = {one: archive.read(one) for one in archive.namelist()}
+    parts = parts_of(write(tmp_path))
     for name, (start, piece, size, end) in SLOW.items():
         parts[SHEET] = b"".join(sheet_of(iter([TABLE, start + piece * (size // len(piece)) + end])))
         (tmp_path / f"{name}.xlsx").write_bytes(zip_bytes(parts))

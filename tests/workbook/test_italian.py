@@ -7,7 +7,6 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-import openpyxl
 import pytest
 
 from assess.cli.command_new import write_new_workbook
@@ -86,12 +85,7 @@ def test_the_example_says_the_same_in_both_languages(tmp_path: Path) -> None:
     assert italian.items[0].description == "Vetrina accanto alla via di uscita"
 
 
-@pytest.fixture(scope="module")
-def book(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    return openpyxl.load_workbook(example(tmp_path_factory.mktemp("it"), "it"))
-
-
-def test_both_languages_in_one_workbook(tmp_path: Path) -> None:
+def test_the_language_is_that_of_most_sheets_and_the_report_may_have_another(tmp_path: Path) -> None:
     items: Rows = [
         ["Item", "Piano", "Breadth [cm]", "Altezza [cm]", "Ancorato", "Anything"],
         ["A1", "1", 40, 180, "yes", 1],
@@ -102,16 +96,10 @@ def test_both_languages_in_one_workbook(tmp_path: Path) -> None:
     assert inventory.places[0].place == "P"
     assert inventory.language == "it", "two sheets of three"
     assert remarks(inventory, "note") == {"Items!F1: the column 'Anything' is not known; it is kept, not used."}
-
-
-def test_the_language_is_that_of_most_sheets(tmp_path: Path) -> None:
-    """The names of the sheets decide, not those of the columns."""
-    for sheets, language in ((("Items", "Piani"), "en"), (("Arredi", "Floors"), "en"), (("Arredi", "Piani"), "it")):
-        book = write_book(tmp_path / "book.xlsx", dict(zip(sheets, (ITEMS, FLOORS), strict=True)))
+    # The names of the sheets decide, not those of the columns.
+    for names, language in ((("Items", "Piani"), "en"), (("Arredi", "Floors"), "en"), (("Arredi", "Piani"), "it")):
+        book = write_book(tmp_path / "book.xlsx", dict(zip(names, (ITEMS, FLOORS), strict=True)))
         assert read_inventory(book).language == language
-
-
-def test_language_of_the_report(tmp_path: Path) -> None:
     for typed, chosen, code in (
         ("italian", "Italiano", "it"), ("IT", "Italiano", "it"), ("English", "English", "en"),
         ("inglese", "English", "en"), (None, "", "it"),
@@ -174,7 +162,7 @@ FAULTY_RECORDS = {
 """Bytes of records that cannot be read, and why not, in Italian."""
 
 
-def test_what_is_wrong_with_a_record_is_said_in_italian(tmp_path: Path) -> None:
+def test_what_is_wrong_with_a_record_is_said_in_italian_and_did_you_mean_in_both_languages(tmp_path: Path) -> None:
     for name, (data, why) in FAULTY_RECORDS.items():
         (tmp_path / name).write_bytes(data)
         (problem,) = problems_of(write(tmp_path, floors=[["Piano", "Registrazione X"], ["1", name]]))
@@ -182,10 +170,7 @@ def test_what_is_wrong_with_a_record_is_said_in_italian(tmp_path: Path) -> None:
         assert problem.message.startswith(f"the record cannot be read: {name}: ")
         with speaking(load_catalogue("it")):
             assert gettext(problem.message) == f"la registrazione non può essere letta: {name}: {why}."
-
-
-def test_did_you_mean_in_both_languages(tmp_path: Path) -> None:
-    """And headers that are no slip."""
+    # And headers that are no slip.
     slips = {
         "Profondta [cm]": "Profondità [cm]", "Quantitta": "Quantità", "Altezza (cm)": "Altezza [cm]",
         "Descripion": "Descrizione", "Anchoredd": "Anchored",

@@ -9,7 +9,6 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-import formualizer
 import openpyxl
 import pytest
 
@@ -19,6 +18,7 @@ from assess.model import STRUCTURES
 from assess.motion.floor_medians import TABLE
 from assess.units import GRAVITY
 from assess.workbook.template import Units
+from tests.recalculate import evaluate
 from tests.workbook.test_live import Rows, by_formualizer, check, fill, poison
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*extension is not supported")]
@@ -33,7 +33,6 @@ ITALIAN_SIZES = [*SIZES[:3], {"type": "Libreria a 5 ripiani"}]
 
 
 def furnish(floors: Rows, sizes: Rows = SIZES) -> Rows:
-    """Return pieces of each size on each floor."""
     return [{"item": f"{one['floor']} {at}", "floor": one["floor"], **size}
             for one, (at, size) in product(floors, enumerate(sizes))]  # fmt: skip
 
@@ -112,7 +111,7 @@ def test_every_intensity_equals_the_program(tmp_path: Path, choice: str) -> None
 
 
 @pytest.mark.parametrize(("grade", "building"), [({"elevation": 0}, {}), ({"elevation": -3}, {"storeys": 4})])
-def test_a_motion_at_grade_serves_a_floor_of_unknown_height(
+def test_a_motion_at_grade_serves_unknown_heights(
     tmp_path: Path, grade: dict[str, Any], building: dict[str, Any]
 ) -> None:
     write_record(tmp_path)
@@ -151,19 +150,16 @@ def test_only_storeys_leave_floors_by_their_number_to_the_program(tmp_path: Path
     assert alone["1"][1:] == ["run assess"] * 7
 
 
-def test_every_way_to_the_roof_equals_the_program(tmp_path: Path) -> None:
+def test_every_way_to_the_roof_and_floors_beside_a_ground_floor_at_0_equal_the_program(tmp_path: Path) -> None:
     for name, building in ROOFS.items():
         check(slender(tmp_path / f"{name}.xlsx", AT_9_M, **building))
+    for floors in (BESIDE_0, TWO_AT_0):
+        check(fill(tmp_path / "book.xlsx", furnish(floors), floors, {"ground_pga": 0.2, "storeys": 4}))
 
 
 BESIDE_0: Rows = [{"floor": "1", "elevation": 0}, {"floor": "2"}]
 TWO_AT_0: Rows = [*BESIDE_0, {"floor": "3", "elevation": 0}]
 """So that numbers do not tell where floor 2 lies."""
-
-
-def test_floors_beside_a_ground_floor_at_0_are_left_to_the_program(tmp_path: Path) -> None:
-    for floors in (BESIDE_0, TWO_AT_0):
-        check(fill(tmp_path / "book.xlsx", furnish(floors), floors, {"ground_pga": 0.2, "storeys": 4}))
 
 
 # ---------------------------------------------------------------- typed peaks
@@ -203,21 +199,20 @@ def test_typed_peaks_equal_the_program(tmp_path: Path, at: int, shift: int) -> N
     check(fill(tmp_path / "book.xlsx", furnish(floors), floors, building))
 
 
-def test_beside_a_typed_floor_the_others_are_the_program_s_task(tmp_path: Path) -> None:
+def test_a_typed_floor_leaves_the_others_to_the_program_and_rows_without_a_name_change_nothing(
+    tmp_path: Path,
+) -> None:
     shown = show(tmp_path, [*FLOORS[:4], FLOORS[4] | {"pfa_x": 0.4}], shaking="MMI VII, very strong")
     assert [one[1:] for one in shown.values()][:4] == [["run assess"] * 7] * 4
     assert shown["4"][1] == 0.4
-
-
-NAMELESS: Rows = [{"elevation": 60}, {"elevation": 0, "pfa_x": 0.9, "pfv_x": 200}, {"record_x": "roof.csv"}]
-
-
-def test_rows_without_a_name_change_nothing(tmp_path: Path) -> None:
-    """They are no floors: neither their height is that of the roof, nor their motion that of the ground."""
+    # They are no floors: neither their height is that of the roof, nor their motion that of the ground.
     alone = show(tmp_path / "alone", AT_9_M, ground_pga=0.2)["a"]
     beside = by_formualizer(poison(slender(tmp_path / "book.xlsx", [*AT_9_M, *NAMELESS], ground_pga=0.2)))[2]
     assert beside[:5] == pytest.approx(alone[:5])
     assert beside[4:] == alone[4:]
+
+
+NAMELESS: Rows = [{"elevation": 60}, {"elevation": 0, "pfa_x": 0.9, "pfv_x": 200}, {"record_x": "roof.csv"}]
 
 
 # ---------------------------------------------------------------- records and ShakeMaps beside
@@ -241,7 +236,9 @@ def test_beside_records_the_sheet_equals_the_program(
     check(fill(tmp_path / "book.xlsx", furnish(floors), floors, {"period": 0.6}))
 
 
-def test_a_record_anywhere_gives_typed_floors_the_scatter_of_earthquakes(tmp_path: Path) -> None:
+def test_records_and_shakemaps_beside_typed_floors_give_them_their_scatter_or_their_class(
+    tmp_path: Path,
+) -> None:
     """0.05 g and B/H 0.2 may rock where motions are drawn with 0.4, not where the typed one is met in every draw."""
     typed: Rows = [{"floor": "a", "elevation": 4, "pfa_x": 0.05, "pfv_x": 9}]
     item = [{"item": "A1", "floor": "a", "breadth": 40, "height": 200}]
@@ -250,6 +247,11 @@ def test_a_record_anywhere_gives_typed_floors_the_scatter_of_earthquakes(tmp_pat
     ):
         path = fill(tmp_path / f"{at}.xlsx", item, [*typed, *beside], {})
         assert by_formualizer(poison(path))[2][7] == said
+    # PFV of a typed PFA goes by the ratio of the map, which the program alone can read.
+    floors = [FLOORS[1], FLOORS[2] | {"pfa_x": 0.1}, FLOORS[3] | {"pfa_x": 0.1, "pfv_x": 20}]
+    assert [one[1] for one in show(tmp_path, floors, **PLACED).values()] == ["run assess", "run assess", 0.1]
+    floors[0] = floors[0] | {"pfa_y": 0.1, "pfv_y": 8}
+    assert [one[1] for one in show(tmp_path, floors, **PLACED).values()] == [0.1, "run assess", 0.1]
 
 
 PLACED = {"shakemap": "grid.xml", "latitude": 37.7893, "longitude": -122.4008}
@@ -259,14 +261,6 @@ PLACED = {"shakemap": "grid.xml", "latitude": 37.7893, "longitude": -122.4008}
 def test_with_a_shakemap_every_floor_waits_for_the_program(tmp_path: Path, more: Any) -> None:
     shown = show(tmp_path, FLOORS, **PLACED | more)
     assert [one[1:] for one in shown.values()] == [["run assess"] * 7] * len(FLOORS)
-
-
-def test_beside_a_shakemap_typed_peaks_alone_have_a_class(tmp_path: Path) -> None:
-    """PFV of a typed PFA goes by the ratio of the map, which the program alone can read."""
-    floors = [FLOORS[1], FLOORS[2] | {"pfa_x": 0.1}, FLOORS[3] | {"pfa_x": 0.1, "pfv_x": 20}]
-    assert [one[1] for one in show(tmp_path, floors, **PLACED).values()] == ["run assess", "run assess", 0.1]
-    floors[0] = floors[0] | {"pfa_y": 0.1, "pfv_y": 8}
-    assert [one[1] for one in show(tmp_path, floors, **PLACED).values()] == [0.1, "run assess", 0.1]
 
 
 # ---------------------------------------------------------------- what is wrong, and what nothing serves
@@ -351,9 +345,7 @@ ROCKING: list[tuple[dict[str, Any], float]] = [
 
 
 @pytest.mark.parametrize(("building", "limit"), ROCKING)
-def test_on_the_ground_a_piece_can_rock_by_the_scatter_of_what_is_known(
-    tmp_path: Path, building: dict[str, Any], limit: float
-) -> None:
+def test_on_the_ground_rocking_goes_by_what_is_known(tmp_path: Path, building: dict[str, Any], limit: float) -> None:
     """PFA e^(3 s) = 0.65 g B/H there; s holds 0.1136 of the piece.
 
     A typed PGA is met in every draw; by PGV alone it has the scatter of PGV/PGA, 0.40; MMI IV has 0.88, which 0.1 does
@@ -376,13 +368,8 @@ def show_velocity(folder: Path, floors: Rows, **building: Any) -> dict[str, Any]
     show(folder, floors, **building)
     book = openpyxl.load_workbook(folder / "book.xlsx")
     places = {cell.value: cell.column for cell in book["Lists"][1]}
-    return {one["floor"]: _read(folder / "book.xlsx", row, places["floor_pfv_x"]) for row, one in enumerate(floors, 2)}
-
-
-def _read(path: Path, row: int, column: int) -> Any:
-    book = formualizer.load_workbook(str(path))
-    book.evaluate_all()
-    return book.get_value("Lists", row, column)
+    evaluated, at = evaluate(folder / "book.xlsx"), places["floor_pfv_x"]
+    return {one["floor"]: evaluated.get_value("Lists", row, at) for row, one in enumerate(floors, 2)}
 
 
 @pytest.mark.parametrize(("structure", "place"), [("frame", 0.6), ("walls", 1.0), ("dual", 0.15)])
@@ -403,13 +390,21 @@ def test_a_floor_shows_the_entry_of_the_table(tmp_path: Path, structure: str, pl
     assert velocity["a"] == pytest.approx(42 * float(row[f"PFV/PGV at {place}"]))
 
 
-def test_without_t1_it_comes_by_height(tmp_path: Path) -> None:
+def test_without_t1_it_comes_by_height_and_above_the_ground_the_peak_is_drawn_too(tmp_path: Path) -> None:
     """T1 = 1.4 x 0.0488 x 20^0.75 = 0.6461 s."""
     floors: Rows = [{"floor": "a", "elevation": 20}]
     typed, by_height = (show(tmp_path / str(at), floors, ground_pga=0.2, **one)["a"] for at, one in enumerate(
         ({"period": 1.4 * 0.0488 * 20**0.75}, {})
     ))  # fmt: skip
     assert by_height[:5] == pytest.approx(typed[:5])
+    # Its scatter is 0.35 there: e^(3 x 0.368) = 3.02 in place of e^(3 x 0.1136) = 1.41.
+    floors = [{"floor": "g", "elevation": 0}, {"floor": "1", "elevation": 6}]
+    building = {"ground_pga": 0.05, "period": 0.5}
+    pfa = show(tmp_path / "shown", floors, **building)["1"][1]
+    limit = 180 * pfa * 3.0163 / 0.65
+    items: Rows = [{"item": str(one), "floor": "1", "breadth": one, "height": 180} for one in (limit - 1, limit + 1)]
+    path = fill(tmp_path / "book.xlsx", items, floors, building)
+    assert [by_formualizer(poison(path))[row][7] for row in (2, 3)] == ["yes", "no"]
 
 
 @pytest.mark.parametrize("z", [0, -3])
@@ -420,17 +415,14 @@ def test_a_floor_at_or_below_grade_has_the_motion_of_the_ground(tmp_path: Path, 
     assert show_velocity(tmp_path, floors, **building)["a"] == pytest.approx(31)
 
 
-def test_pfv_of_a_typed_pfa_has_the_ratio_of_a_typed_ground(tmp_path: Path) -> None:
+def test_a_typed_pfa_is_shown_as_typed_and_its_pfv_has_the_ratio_of_a_typed_ground(tmp_path: Path) -> None:
     """At grade PFV/PFA is that of the ground; a typed motion there comes before Ground PGA and Ground PGV."""
     floors: Rows = [{"floor": "g", "elevation": 0, "pfa_x": 0.2, "pfv_x": 30}, {"floor": "b", "elevation": -3,
                     "pfa_x": 0.1}]  # fmt: skip
     assert show_velocity(tmp_path, floors, ground_pga=0.2, ground_pgv=99)["b"] == pytest.approx(15)
     assert show_velocity(tmp_path, floors[1:], ground_pga=0.2, ground_pgv=99)["b"] == pytest.approx(10.5), "no PFV"
     assert show_velocity(tmp_path, [{"floor": "b", "pfa_x": 0.1, "elevation": 8}, *floors[:1]])["b"] > 0
-
-
-def test_a_typed_pfa_is_shown_as_typed_whatever_the_ground(tmp_path: Path) -> None:
-    floors: Rows = [{"floor": "a", "elevation": 6, "pfa_x": 0.35}]
+    floors = [{"floor": "a", "elevation": 6, "pfa_x": 0.35}]
     for at, building in enumerate(AROUND):
         assert show(tmp_path / str(at), floors, **building)["a"][1] == 0.35
 
@@ -446,14 +438,3 @@ def test_where_the_ground_is_typed_the_map_changes_nothing(tmp_path: Path, groun
 def test_where_only_own_motions_count_the_ground_serves_no_floor(tmp_path: Path, kind: str) -> None:
     shown = show(tmp_path, FLOORS[:3], shaking="MMI VII, very strong", scenario_kind=kind)
     assert [one[1:] for one in shown.values()] == [["shaking?"] * 7] * 3
-
-
-def test_above_the_ground_the_peak_is_drawn_too(tmp_path: Path) -> None:
-    """Its scatter is 0.35 there: e^(3 x 0.368) = 3.02 in place of e^(3 x 0.1136) = 1.41."""
-    floors: Rows = [{"floor": "g", "elevation": 0}, {"floor": "1", "elevation": 6}]
-    building = {"ground_pga": 0.05, "period": 0.5}
-    pfa = show(tmp_path / "shown", floors, **building)["1"][1]
-    limit = 180 * pfa * 3.0163 / 0.65
-    items: Rows = [{"item": str(one), "floor": "1", "breadth": one, "height": 180} for one in (limit - 1, limit + 1)]
-    path = fill(tmp_path / "book.xlsx", items, floors, building)
-    assert [by_formualizer(poison(path))[row][7] for row in (2, 3)] == ["yes", "no"]

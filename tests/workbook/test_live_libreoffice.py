@@ -61,27 +61,19 @@ def _slender(floors: live.Rows, building: dict[str, Any]) -> Book:
 
 STOREYS = {"ground_pga": 0.2, "storeys": 4}
 BOOKS: Books = {
-    "grid, imperial": _grid("imperial"),
-    "grid, mixed units": _grid(headers="mixed"),
+    "grid, imperial": _grid("imperial"), "grid, mixed units": _grid(headers="mixed"),
     "grid, Italian": lambda path: live.italian_grid(path, "si"),
     "blank rows": lambda path: fill(path, live.GRID[:1], live.FLOORS, {}, spare=None),
-    "unknown types": live.unknown_types,
-    "stray names": live.stray_names,
+    "unknown types": live.unknown_types, "stray names": live.stray_names,
     "signs": lambda path: live.floors_of_signs(path, [*live.SIGNS, "12"]),
     "signs of no floor": lambda path: live.floors_of_signs(path, ["1**", "1?*", "~1?", "*?", "2*"]),
-    "anchored": live.anchored_pieces,
-    "typed capacities": live.typed_capacities,
-    "texts": live.texts_for_numbers,
-    "widths": live.breadths_and_widths,
-    "slower motion": live.pieces_of_a_slower_motion,
-    **{f"beside {at}": _beside(at) for at in (0, 9)},
-    "ground, JMA": _ground(ground.FLOORS, ground.BUILDINGS["JMA"]),
-    "ground, Italian": _italian_ground(1),
-    "typed, at grade, two ratios": _typed("at grade, two ratios"),
-    "roof, more": _slender(ground.AT_9_M, ground.ROOFS["more"]),
-    "two floors at 0": _ground(ground.TWO_AT_0, STOREYS),
+    "anchored": live.anchored_pieces, "typed capacities": live.typed_capacities, "texts": live.texts_for_numbers,
+    "widths": live.breadths_and_widths, "slower motion": live.pieces_of_a_slower_motion,
+    **{f"beside {at}": _beside(at) for at in (0, 9)}, "ground, JMA": _ground(ground.FLOORS, ground.BUILDINGS["JMA"]),
+    "ground, Italian": _italian_ground(1), "typed, at grade, two ratios": _typed("at grade, two ratios"),
+    "roof, more": _slender(ground.AT_9_M, ground.ROOFS["more"]), "two floors at 0": _ground(ground.TWO_AT_0, STOREYS),
     "rows without a name": _slender([*ground.AT_9_M, *ground.NAMELESS], {"ground_pga": 0.2}),
-}
+}  # fmt: skip
 OTHERS: Books = {
     "grid, SI": _grid("si"),
     "grid, mm": _grid(headers="mm"),

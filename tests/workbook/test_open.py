@@ -39,32 +39,23 @@ def test_no_workbook(tmp_path: Path) -> None:
         assert "cannot be opened" in error or "does not exist" in error
 
 
-def test_too_large(tmp_path: Path) -> None:
+def test_workbooks_that_are_too_large_cut_off_protected_or_strict(tmp_path: Path) -> None:
     path = tmp_path / "large.xlsx"
     with path.open("wb") as file:
         file.write(b"PK\x03\x04")
         file.truncate(101 * 2**20)  # a hole, which takes no space on the disk
     assert errors_of(path) == {"large.xlsx is larger than 100 MB. Remove pictures and unused sheets."}
-
-
-def test_truncated(tmp_path: Path) -> None:
     path = write(tmp_path)
     whole = path.read_bytes()
     for share in (0.2, 0.9, 0.99):
         path.write_bytes(whole[: int(share * len(whole))])
         assert errors_of(path) == {"book.xlsx is damaged: its zip cannot be read. Open it in Excel and save it again."}
-
-
-def test_password_of_the_zip(tmp_path: Path) -> None:
     path = write(tmp_path)
     data = bytearray(path.read_bytes())
     place = data.index(b"PK\x01\x02")
     data[place + 8] |= 1
     path.write_bytes(data)
     assert errors_of(path) == {"book.xlsx is protected by a password. Save it without a password."}
-
-
-def test_strict_open_xml(tmp_path: Path) -> None:
     strict = replace(MAIN, "http://purl.oclc.org/ooxml/spreadsheetml/main")
     path = change_parts(write(tmp_path), {WORKBOOK: strict, SHEET: strict})
     assert errors_of(path) == {
@@ -100,21 +91,15 @@ def test_zip_bomb(tmp_path: Path) -> None:
     }
 
 
-def test_too_many_parts(tmp_path: Path) -> None:
+def test_zips_of_too_many_parts_with_two_of_one_name_unusually_packed_or_of_a_size_that_lies(tmp_path: Path) -> None:
     path = change_parts(write(tmp_path), {f"xl/{number}.xml": b"" for number in range(2001)})
     assert "as a zip bomb does" in next(iter(errors_of(path)))
-
-
-def test_two_parts_of_one_name(tmp_path: Path) -> None:
     path = write(tmp_path)
     with zipfile.ZipFile(path, "a") as archive, pytest.warns(UserWarning, match="Duplicate name"):
         archive.writestr(SHEET, "<worksheet/>")
     assert errors_of(path) == {
         "the workbook is damaged: its zip holds two parts of one name. Open it in Excel and save it again."
     }
-
-
-def test_unusual_compression(tmp_path: Path) -> None:
     path = write(tmp_path)
     with zipfile.ZipFile(path, "a", zipfile.ZIP_LZMA) as archive:
         archive.writestr("xl/more.xml", "<more/>")
@@ -122,9 +107,6 @@ def test_unusual_compression(tmp_path: Path) -> None:
         "the workbook is damaged: its zip uses a compression that Excel does not use. "
         "Open it in Excel and save it again."
     }
-
-
-def test_a_size_that_lies(tmp_path: Path) -> None:
     path = write(tmp_path)
     with zipfile.ZipFile(path) as archive:
         place = [one.filename for one in archive.infolist()].index(SHEET)

@@ -30,7 +30,7 @@ def test_units_of_headers(tmp_path: Path) -> None:
             assert found == pytest.approx(value, rel=1e-12), (label, unit)
 
 
-def test_headers_that_are_wrong(tmp_path: Path) -> None:
+def test_headers_of_a_table_and_lines_of_a_form_that_are_wrong(tmp_path: Path) -> None:
     units = "Write the unit that the numbers are in, such as Height [cm]; known units: mm, cm, m, in, ft."
     unknown = "the column '{}' is not known. Did you mean {}?"
     wrong = {
@@ -47,16 +47,9 @@ def test_headers_that_are_wrong(tmp_path: Path) -> None:
         path = write(tmp_path, [["Item", "Floor", "Breadth [cm]", "Type", header], ["A1", "1", 40, "T", 180]],
                      Catalogue=[["Type", "Height [cm]"], ["T", 180]])  # fmt: skip
         assert errors_of(path) == {f"Items!E1: {message}"}
-
-
-def test_a_form_has_lines(tmp_path: Path) -> None:
     building: Sheet = [
-        ["Buildng", "Town hall"],
-        ["Period T1 [ms]", 900],
-        ["Storeys", 4],
-        ["storeys ", 5],
-        ["Colour", "red"],
-    ]
+        ["Buildng", "Town hall"], ["Period T1 [ms]", 900], ["Storeys", 4], ["storeys ", 5], ["Colour", "red"],
+    ]  # fmt: skip
     path = write(tmp_path, Building=building)
     assert errors_of(path) == {
         "Building!A1: the line 'Buildng' is not known. Did you mean Building?",
@@ -65,14 +58,11 @@ def test_a_form_has_lines(tmp_path: Path) -> None:
     }
 
 
-def test_columns_in_any_order_and_spelling(tmp_path: Path) -> None:
+def test_headers_in_any_order_and_spelling_and_below_a_title(tmp_path: Path) -> None:
     items: Sheet = [["  HEIGHT [ CM ]", "fLoOr", "breadth[cm]", None, "It em", "Edge\u00a0 distance [m]"],
              [180, "1", 40, None, "A1", -0.5]]  # fmt: skip
     found = read(tmp_path, items).items[0]
     assert (found.item, found.floor, found.breadth, found.height, found.edge_distance) == ("A1", "1", 0.4, 1.8, -0.5)
-
-
-def test_header_below_a_title(tmp_path: Path) -> None:
     for above in (1, 19):
         title = [["Furniture of the town hall"], *([[]] * (above - 1))]
         inventory = read(tmp_path, [*title, *ITEMS, [], ["A2", "1", 50, 180]])
@@ -82,21 +72,13 @@ def test_header_below_a_title(tmp_path: Path) -> None:
     }
 
 
-def test_unknown_columns_are_kept(tmp_path: Path) -> None:
+def test_unknown_columns_are_kept_and_a_row_without_an_entry_is_left_out(tmp_path: Path) -> None:
     """But for live ones; none of these is a slip of a column."""
     live = ["B/H", "PFA used [g]", "OR", "Kaneko-Hayashi", "Class (formula)"]
     own = [
-        "Picture",
-        "Inventory no.",
-        "Bought",
-        "Mass [kg]",
-        "Mass",
-        "Colour",
-        "Owner",
-        "Age [years]",
-        "Z [m]",
+        "Picture", "Inventory no.", "Bought", "Mass [kg]", "Mass", "Colour", "Owner", "Age [years]", "Z [m]",
         "Depth [cm]",
-    ]
+    ]  # fmt: skip
     rows: Sheet = [
         ["A1", "1", 40, 180, *["=C2/D2"] * 5, "left", 4711.0, datetime(2020, 5, 1)],
         ["A2", "1", 50, 180, *["=1"] * 5, None, "x\u202ey", True],
@@ -111,9 +93,6 @@ def test_unknown_columns_are_kept(tmp_path: Path) -> None:
         f"Items!{letter}1: the column '{header}' is not known; it is kept, not used."
         for letter, header in zip("JKLMNOPQRS", own, strict=True)
     }
-
-
-def test_a_row_without_an_entry_is_left_out(tmp_path: Path) -> None:
     inventory = read(tmp_path, [[*ITEMS[0], "Picture"], [*ITEMS[1], None], [None, None, None, " ", "right"]])
     assert len(inventory.items) == 1
     assert remarks(inventory, "warning") == {"Items!E3: stands in a row without an entry; the row is left out."}

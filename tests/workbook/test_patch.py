@@ -21,14 +21,9 @@ from tests.pictures import picture
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
 from tests.workbook.books import change_parts, replace
 from tests.workbook.raw import MAIN, RELATIONS, SHEET, zip_bytes
-from tests.workbooks import edited, places
+from tests.workbooks import edited, parts_of, places
 
 BOOK, CHAIN, TYPES = "xl/workbook.xml", "xl/calcChain.xml", "[Content_Types].xml"
-
-
-def parts_of(data: bytes) -> dict[str, bytes]:
-    with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        return {name: archive.read(name) for name in archive.namelist()}
 
 
 def directory_of(data: bytes) -> list[tuple[Any, ...]]:
@@ -78,12 +73,6 @@ def minimal(rows: str, *, head: str = "", tail: str = "", root: str = f'<workshe
     return zip_bytes(parts_of(packed.getvalue()) | {SHEET: f"{root}{head}{rows}{tail}</{name}>".encode()})
 
 
-def data_of(data: bytes) -> str:
-    """The rows of the sheet, as they stand in its XML."""
-    text = parts_of(data)[SHEET].decode()
-    return text[text.index("<sheetData") : text.index("</sheetData>") + len("</sheetData>")]
-
-
 def rich(path: Path) -> Path:
     """A workbook with what openpyxl loses or writes anew."""
     with xlsxwriter.Workbook(path) as book:
@@ -117,14 +106,11 @@ def rich(path: Path) -> Path:
 
 
 CHANGES: dict[str, Any] = {f"C{row}": 30.0 + row for row in range(2, 8)} | {
-    "B3": "Ground & <1>",
-    "C9": 0.15,
-    "A40": "new",
-    "U5": True,
-}
+    "B3": "Ground & <1>", "C9": 0.15, "A40": "new", "U5": True,
+}  # fmt: skip
 
 
-def test_every_other_byte_of_a_rich_workbook_stays(tmp_path: Path) -> None:
+def test_every_other_byte_of_a_rich_workbook_and_the_format_of_a_cell_stays(tmp_path: Path) -> None:
     before = rich(tmp_path / "book.xlsx").read_bytes()
     after = edited(before, {"Items": CHANGES})
     assert changed_parts(before, after) == {SHEET}
@@ -142,10 +128,7 @@ def test_every_other_byte_of_a_rich_workbook_stays(tmp_path: Path) -> None:
     assert outside[1].replace(b'<row r="40"></row>', b"") == re.sub(rb'(<row r="5") spans="[^"]*"', rb"\1", outside[0])
     kept = {found[1]: found[0] for found in cells.finditer(old) if found[1].decode() not in CHANGES}
     assert {found[1]: found[0] for found in cells.finditer(new) if found[1].decode() not in CHANGES} == kept
-
-
-def test_the_format_of_a_cell_stays(tmp_path: Path) -> None:
-    """A number in a cell of the format Text is a number all the same."""
+    # A number in a cell of the format Text is a number all the same.
     after = edited(rich(tmp_path / "book.xlsx").read_bytes(), {"Items": {"C2": 45.5, "C3": None, "U9": 2}})
     page = openpyxl.load_workbook(io.BytesIO(after))["Items"]
     assert (page["C2"].value, page["C2"].data_type, page["C2"].number_format) == (45.5, "n", "@")
@@ -187,19 +170,19 @@ IN_ORDER: list[tuple[str, dict[str, Any], str]] = [
 ]  # fmt: skip
 
 
-def test_rows_and_cells_are_put_in_their_order() -> None:
+def test_rows_and_cells_are_put_in_their_order_under_any_prefix_and_within_a_true_extent() -> None:
     for rows, changes, expected in IN_ORDER:
         sheet = parts_of(edited(minimal(rows), {"Items": changes}))[SHEET].decode()
         assert sheet == f'<worksheet xmlns="{MAIN}">{expected}</worksheet>'
-
-
-def test_a_prefix_of_names() -> None:
     before = minimal(
         '<x:sheetData><x:row r="1"><x:c r="A1" t="b"><x:v>1</x:v></x:c></x:row></x:sheetData>',
         root=f'<x:worksheet xmlns:x="{MAIN}">',
     )
     after = edited(before, {"Items": {"A1": "text", "B1": 2, "A3": True}})
     assert values_of(after) == own_values(after) == {"A1": "text", "B1": 2, "A3": True}
+    before = minimal('<sheetData><row r="3"><c r="B3"/></row></sheetData>', head='<dimension ref="B3"/>')
+    assert b'<dimension ref="B3"/>' in parts_of(edited(before, {"Items": {"B3": 1}}))[SHEET]
+    assert b'<dimension ref="A2:B3"/>' in parts_of(edited(before, {"Items": {"A2": 1}}))[SHEET]
 
 
 def test_what_only_looks_like_a_cell() -> None:
@@ -216,12 +199,6 @@ def test_what_only_looks_like_a_cell() -> None:
     assert values_of(after)["A1"] == '<c r="B1"><v>5</v></c></row></sheetData>'
 
 
-def test_the_extent_of_the_cells_is_kept_true() -> None:
-    before = minimal('<sheetData><row r="3"><c r="B3"/></row></sheetData>', head='<dimension ref="B3"/>')
-    assert b'<dimension ref="B3"/>' in parts_of(edited(before, {"Items": {"B3": 1}}))[SHEET]
-    assert b'<dimension ref="A2:B3"/>' in parts_of(edited(before, {"Items": {"A2": 1}}))[SHEET]
-
-
 AWKWARD = ["", " padded ", "a\nb\tc", "a\rb", "<&>\"'", "_x0041_", "_x005F_", "é€𝄞", "=1+1", "0123", "]]>"]
 
 
@@ -235,9 +212,11 @@ def test_texts_and_numbers() -> None:
     for value in (0, -0.0, 45.0, 0.1, 1 / 3, 1e22, 5e-324, -1.5e300, 2**53 + 1, 10**20):
         after = edited(before, {"Items": {"A1": value}})
         assert own_values(after)["A1"] == values_of(after)["A1"] == float(value)
+    after = edited(minimal("<sheetData/>"), {"Items": {"A1": "a\x07b\uffff\ud800"}})
+    assert ">a_x0007_b_xFFFF_\ufffd</t>".encode() in parts_of(after)[SHEET]  # a surrogate alone is no character
 
 
-def test_what_cannot_be_changed() -> None:
+def test_what_cannot_be_changed_is_refused_by_name() -> None:
     """Values that a cell cannot hold, addresses that are none, and a sheet that is missing."""
     before = minimal("<sheetData/>")
     values: list[Any] = [math.nan, math.inf, -math.inf, 1e308, 10**400, "x" * 32_768]
@@ -248,6 +227,21 @@ def test_what_cannot_be_changed() -> None:
         with pytest.raises(WorkbookError, match="is no cell of a sheet"):
             open_workbook(before, "book.xlsx").set({"Items": {place: 1}})
     assert refusals(before, {"Itmes": {"A1": 1}}) == {"Itmes: the sheet is missing."}
+    assert refusals(minimal(FORMULAS), {"Items": {"B1": 1, "C1": 1, "C2": 1, "D2": 1, "E3": 1}}) == {
+        "Items!B1: its formula is shared by other cells. Change this cell in Excel.",
+        "Items!C1: it belongs to an array formula. Change this cell in Excel.",
+        "Items!C2: it belongs to an array formula. Change this cell in Excel.",
+        "Items!D2: it belongs to a data table. Change this cell in Excel.",
+        "Items!E3: it belongs to a data table. Change this cell in Excel.",
+    }
+    assert values_of(edited(minimal(FORMULAS), {"Items": {"B2": 1}}))["B2"] == 1
+    signed = zip_bytes(parts_of(minimal("<sheetData/>")) | {"_xmlsignatures/sig1.xml": b"<Signature/>"})
+    assert refusals(signed, {"Items": {"A1": 1}}) == {
+        "book.xlsx is digitally signed; a change would break the signature. Save it from Excel without the signature."
+    }
+    for rows, expected in ODD.values():
+        (problem,) = refusals(minimal(rows), {"Items": {"A1": 1}})
+        assert expected in problem
 
 
 FORMULAS = (
@@ -260,7 +254,6 @@ FORMULAS = (
 
 
 def with_chain(data: bytes, chain: str) -> bytes:
-    """Add a calculation chain to a workbook."""
     types = "application/vnd.openxmlformats-officedocument.spreadsheetml.calcChain+xml"
     kind = "http://schemas.openxmlformats.org/officeDocument/2006/relationships/calcChain"
     parts = parts_of(data)
@@ -286,17 +279,6 @@ def test_the_calculation_chain_goes_with_a_formula() -> None:
     assert values_of(after) == {"A1": 3}
 
 
-def test_formulas_of_several_cells_are_refused_by_name() -> None:
-    assert refusals(minimal(FORMULAS), {"Items": {"B1": 1, "C1": 1, "C2": 1, "D2": 1, "E3": 1}}) == {
-        "Items!B1: its formula is shared by other cells. Change this cell in Excel.",
-        "Items!C1: it belongs to an array formula. Change this cell in Excel.",
-        "Items!C2: it belongs to an array formula. Change this cell in Excel.",
-        "Items!D2: it belongs to a data table. Change this cell in Excel.",
-        "Items!E3: it belongs to a data table. Change this cell in Excel.",
-    }
-    assert values_of(edited(minimal(FORMULAS), {"Items": {"B2": 1}}))["B2"] == 1
-
-
 def test_stored_results_of_formulas() -> None:
     results: dict[str, Any] = {"A1": 0.5, "B1": "a<b", "D1": None, "C1": True}
     before = minimal(FORMULAS)
@@ -304,10 +286,15 @@ def test_stored_results_of_formulas() -> None:
     assert items.marks.formulas == {*places(dict.fromkeys(["A1", "B1", "C1", "D1", "B2", "D2"]))}
     assert all(items.value(place) not in (None, UNSAVED) for place in items.marks.formulas)
     after = with_results(before, results)
-    assert data_of(after).startswith(
-        '<sheetData><row r="1"><c r="A1"><f>1+1</f><v>0.5</v></c>'
-        '<c r="B1" t="str"><f t="shared" ref="B1:B3" si="0">A1</f><v>a&lt;b</v></c>'
-        '<c r="C1" cm="1" t="b"><f t="array" ref="C1:C2">A1:A2</f><v>1</v></c><c r="D1"><f>"x"</f></c></row>'
+    assert (
+        parts_of(after)[SHEET]
+        .decode()
+        .partition("<sheetData")[2]
+        .startswith(
+            '><row r="1"><c r="A1"><f>1+1</f><v>0.5</v></c>'
+            '<c r="B1" t="str"><f t="shared" ref="B1:B3" si="0">A1</f><v>a&lt;b</v></c>'
+            '<c r="C1" cm="1" t="b"><f t="array" ref="C1:C2">A1:A2</f><v>1</v></c><c r="D1"><f>"x"</f></c></row>'
+        )
     )
     assert open_workbook(after, "book.xlsx").sheet("Items").value((1, 3)) is UNSAVED
     assert with_results(after, results) == after
@@ -351,12 +338,6 @@ ODD: dict[str, tuple[str, str]] = {
 }  # fmt: skip
 
 
-def test_sheets_that_are_not_understood() -> None:
-    for rows, expected in ODD.values():
-        (problem,) = refusals(minimal(rows), {"Items": {"A1": 1}})
-        assert expected in problem
-
-
 HOSTILE: dict[str, tuple[Callable[[bytes], bytes], str]] = {
     "entities": (lambda data: b'<!DOCTYPE x [<!ENTITY a "ha">]>' + data, "document type|entities"),
     "a document type": (lambda data: b"<!DOCTYPE x>" + data, "document type"),
@@ -379,18 +360,6 @@ def test_hostile_parts() -> None:
             archive.writestr(name, data)
     (problem,) = refusals(bomb.getvalue(), {"Items": {"A1": 1}})
     assert "zip bomb" in problem
-
-
-def test_a_signed_workbook_is_refused() -> None:
-    signed = zip_bytes(parts_of(minimal("<sheetData/>")) | {"_xmlsignatures/sig1.xml": b"<Signature/>"})
-    assert refusals(signed, {"Items": {"A1": 1}}) == {
-        "book.xlsx is digitally signed; a change would break the signature. Save it from Excel without the signature."
-    }
-
-
-def test_characters_that_xml_lacks_are_coded() -> None:
-    after = edited(minimal("<sheetData/>"), {"Items": {"A1": "a\x07b\uffff\ud800"}})
-    assert ">a_x0007_b_xFFFF_\ufffd</t>".encode() in parts_of(after)[SHEET]  # a surrogate alone is no character
 
 
 @given(

@@ -47,7 +47,7 @@ def _plan(inventory: Inventory) -> FloorPlan:
     return plan
 
 
-def test_every_format_is_placed_by_its_numbers(folder: Path) -> None:
+def test_every_format_is_placed_by_its_numbers_and_a_dxf_file_by_its_units(folder: Path) -> None:
     for name in ("p.png", "p.jpg", "p.svg", "p.dxf", "unitless.dxf"):
         inventory = _read(folder, {"plan": name, **PLACED, "plan_turn": 90})
         plan, is_lines = _plan(inventory), name[-3:] in ("svg", "dxf")
@@ -60,9 +60,6 @@ def test_every_format_is_placed_by_its_numbers(folder: Path) -> None:
         assert remarks(inventory, "warning") == set()
     plan = _plan(_read(folder, {"plan": "p.png", **PLACED}, units="imperial"))
     assert (plan.left, plan.width) == pytest.approx((0.3048, 16 * 0.3048))
-
-
-def test_a_dxf_file_tells_its_width_where_it_names_its_units(folder: Path) -> None:
     corner = {"plan_left": 0.0, "plan_bottom": 0.0}
     assert _plan(_read(folder, {"plan": "p.dxf", **corner})).width == 16.0
     assert _plan(_read(folder, {"plan": "p.dxf", **corner, "plan_width": 8.0})).width == 8.0
@@ -71,7 +68,7 @@ def test_a_dxf_file_tells_its_width_where_it_names_its_units(folder: Path) -> No
     assert any("the plan is not drawn: Plan width is blank." in one for one in remarks(unknown, "warning"))
 
 
-def test_a_plan_without_its_numbers_is_not_drawn(folder: Path) -> None:
+def test_a_plan_without_its_numbers_is_not_drawn_and_what_is_left_out_is_noted(folder: Path) -> None:
     inventory = _read(folder, {"plan": "p.png", "plan_left": 0.0})
     assert inventory.floors[0].plan is None
     assert remarks(inventory, "warning") == {
@@ -81,9 +78,14 @@ def test_a_plan_without_its_numbers_is_not_drawn(folder: Path) -> None:
     assert remarks(_read(folder, PLACED), "warning") == {
         f"{_cell('plan_left')}: Plan left X is filled in without Plan. Name the file of the plan, or clear it."
     }
+    (folder / "x.dxf").write_bytes(dxf(xref=True))
+    inventory = _read(folder, {"plan": "x.dxf", **PLACED})
+    assert f"{_cell('plan')}: of the plan the lines alone are drawn; left out: 1 TEXT, 1 XREF OTHER." in remarks(
+        inventory, "note"
+    )
 
 
-def test_errors_by_cell(folder: Path) -> None:
+def test_errors_by_cell_and_pieces_that_are_read_without_pictures_that_are_wrong(folder: Path) -> None:
     (folder / "logo.svg").write_bytes(b"<svg onload='x'/>")
     (folder / "large.png").write_bytes(picture("PNG") + bytes(10 * 2**20))
     useless = "the picture '{}' cannot be used: "
@@ -98,23 +100,20 @@ def test_errors_by_cell(folder: Path) -> None:
         (error,) = errors_of(_write(folder, {**PLACED, **floor}))
         (*_, cell), (*_, value) = floor, floor.values()
         assert error.startswith(f"{_cell(cell)}: {message.format(value)}")
+    path = _write(folder, {"plan": "gone.png"}, PIECE | {"item": "A2", "photo": "gone.jpg"})
+    inventory = read_inventory(path, strict=False)
+    assert [item.item for item in inventory.items] == ["A1", "A2"]
+    assert inventory.floors[0].plan is None
+    assert inventory.photos == {}
+    assert len(inventory.errors) == 1
+    both = _write(folder, {}, PIECE | {"item": "A2", "photo": "gone.jpg", "height": "tall"})
+    assert [item.item for item in read_inventory(both, strict=False).items] == ["A1"]
 
 
-def test_what_is_left_out_is_noted(folder: Path) -> None:
-    (folder / "x.dxf").write_bytes(dxf(xref=True))
-    inventory = _read(folder, {"plan": "x.dxf", **PLACED})
-    assert f"{_cell('plan')}: of the plan the lines alone are drawn; left out: 1 TEXT, 1 XREF OTHER." in remarks(
-        inventory, "note"
-    )
-
-
-def test_pieces_outside_the_plan(folder: Path) -> None:
+def test_pieces_outside_the_plan_and_a_plan_in_another_unit(folder: Path) -> None:
     items = [{**PIECE, "item": f"B{n}", "x": x, "y": 5.0} for n, x in enumerate((0.9, 1.1, 17.1, 40.0, -3.0, 16.9))]
     (warning,) = remarks(_read(folder, {"plan": "p.png", **PLACED}, *items), "warning")
     assert warning.startswith(f"{_cell('plan')}: 4 pieces of 6 lie outside the plan: 'B0', 'B2', 'B3', ....")
-
-
-def test_a_plan_in_another_unit(folder: Path) -> None:
     items = [{**PIECE, "item": f"B{n}", "x": 2.0 + 3 * n, "y": 5.0} for n in range(2)]
     plan = {"plan": "p.png", **PLACED, "plan_width": 160.0}
     (warning,) = remarks(_read(folder, plan, *items), "warning")
@@ -130,9 +129,7 @@ def _write_floors(folder: Path, plans: list[str]) -> Path:
     return write(folder / "w.xlsx", [PIECE], floors)
 
 
-def test_a_drawing_is_read_once_whatever_its_widths_and_a_picture_for_each(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_drawing_is_read_once_and_a_picture_for_each_width(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     done: list[float | None] = []
 
     def count(data: bytes, width: float | None) -> Drawing:
@@ -157,7 +154,7 @@ def test_too_many_drawings(folder: Path, monkeypatch: pytest.MonkeyPatch, name: 
     assert error.endswith(" MB. Save the walls and doors alone, or name fewer.")
 
 
-def test_photos_are_read_once_and_kept_small(folder: Path) -> None:
+def test_photos_are_read_once_and_kept_small_and_what_is_no_picture_is_left_out(folder: Path) -> None:
     items = [
         {**PIECE, "item": name, "photo": photo} for name, photo in (("B", "p.jpg"), ("C", "p.jpg"), ("D", "p.png"))
     ]
@@ -165,9 +162,6 @@ def test_photos_are_read_once_and_kept_small(folder: Path) -> None:
     assert [item.more.get("photo") for item in inventory.items] == [None, "p.jpg", "p.jpg", "p.png"]
     assert set(inventory.photos) == {"p.jpg", "p.png"}
     assert all(photo.startswith(b"\xff\xd8\xff") and len(photo) < 40_000 for photo in inventory.photos.values())
-
-
-def test_a_photo_that_is_no_picture(folder: Path) -> None:
     path = _write(folder, {}, {**PIECE, "item": "B", "photo": "text.png"}, {**PIECE, "item": "C", "photo": "p.svg"})
     inventory = read_inventory(path)
     assert inventory.photos == {}
@@ -189,14 +183,3 @@ def test_series_hold_plans_and_photos_and_results_json_does_not(folder: Path) ->
     assert (row.path.name, row.width, row.is_lines) == ("p.svg", 16.0, True)
     text = assess.write_reports(results, folder, "json")["json"].read_text(encoding="utf-8")
     assert "p.svg" not in text
-
-
-def test_pieces_are_read_without_pictures_that_are_wrong(folder: Path) -> None:
-    path = _write(folder, {"plan": "gone.png"}, PIECE | {"item": "A2", "photo": "gone.jpg"})
-    inventory = read_inventory(path, strict=False)
-    assert [item.item for item in inventory.items] == ["A1", "A2"]
-    assert inventory.floors[0].plan is None
-    assert inventory.photos == {}
-    assert len(inventory.errors) == 1
-    both = _write(folder, {}, PIECE | {"item": "A2", "photo": "gone.jpg", "height": "tall"})
-    assert [item.item for item in read_inventory(both, strict=False).items] == ["A1"]

@@ -33,7 +33,7 @@ def lenient(path: Path) -> Inventory:
     return read_inventory(path, strict=False)
 
 
-def test_the_bytes_that_are_read_are_those_that_are_hashed_and_kept(tmp_path: Path) -> None:
+def test_the_bytes_that_are_read_are_hashed_and_kept_and_records_may_be_handed_over_as_bytes(tmp_path: Path) -> None:
     path = write(tmp_path)
     data = path.read_bytes()
     inventory, by_bytes = read_inventory(path), read_inventory(data)
@@ -43,9 +43,6 @@ def test_the_bytes_that_are_read_are_those_that_are_hashed_and_kept(tmp_path: Pa
     path.write_bytes(b"changed since")
     assert inventory.read_bytes() == data
     assert inventory.sha256 == hashlib.sha256(data).hexdigest()
-
-
-def test_records_are_handed_over_as_bytes_or_lie_in_another_folder(tmp_path: Path) -> None:
     (tmp_path / "records" / "a").mkdir(parents=True)
     write_record(tmp_path / "records" / "a" / "one.csv")
     path = write(tmp_path, floors=floors_with(r"a\one.csv"))
@@ -105,9 +102,6 @@ def test_rows_in_code_get_the_checks_and_messages_of_a_workbook() -> None:
         with pytest.raises(WorkbookError) as caught:
             read_inventory({**CODE, "Items": [*sound[:2], sound[2] | cells]})
         assert [str(one) for one in caught.value.problems if one.severity == "error"] == [message]
-
-
-def test_rows_in_code_that_cannot_be_read() -> None:
     cases: list[tuple[dict[str, Any], type[Exception], str]] = [
         ({"Items": [], "Chairs": []}, InputError, "the sheet 'Chairs' is not known, expected: Building, Floors"),
         ({"Items": ["A1"]}, InputError, "Items: every row has to be a mapping of fields to values"),
@@ -121,7 +115,7 @@ def test_rows_in_code_that_cannot_be_read() -> None:
             read_inventory(rows)
 
 
-def test_a_faulty_row_is_left_out(tmp_path: Path) -> None:
+def test_a_faulty_row_or_sheet_is_left_out_with_the_rows_that_need_it(tmp_path: Path) -> None:
     """Or a line of the building, alone."""
     items = [*ITEMS, ["A2", "1", 40, 1.8], ["A3", "1", 50, 170], ["A3", "1", 50, 170]]
     path = write(tmp_path, items, Building=[["Use", "school"], ["Storeys", "many"]])
@@ -132,26 +126,17 @@ def test_a_faulty_row_is_left_out(tmp_path: Path) -> None:
     assert {str(one) for one in inventory.errors} == {str(one) for one in problems_of(path)}
     with pytest.raises(WorkbookError, match="is not an Excel workbook"):
         read_inventory(b"no workbook", strict=False)
-
-
-def test_rows_that_need_a_row_that_is_left_out_go_with_it(tmp_path: Path) -> None:
     floors: Sheet = [*FLOORS, ["2", "strong"]]
     inventory = lenient(write(tmp_path, [*ITEMS, ["A2", "2", 40, 180], ["A3", "2", 40, 180]], floors))
     assert ([one.floor for one in inventory.floors], [one.item for one in inventory.items]) == (["1"], ["A1"])
     assert [str(one) for one in inventory.problems if one.severity == "warning"] == [
         "Items!B3: 2 rows that name Floor '2' are left out, as the row that defines '2' has errors. Correct that row."
     ]
-
-
-def test_a_faulty_sheet_is_empty(tmp_path: Path) -> None:
     items = [["Item", "Floor", "Breadth [cm]", "Heigth [cm]"], ["A1", "1", 40, 180]]
     inventory = lenient(write(tmp_path, items))
     assert (inventory.items, [one.floor for one in inventory.floors]) == ((), ["1"])
     assert "Items!D1" in [one.place for one in inventory.errors]
     assert lenient(write(tmp_path, [])).items == ()
-
-
-def test_a_segment_that_is_left_out_takes_its_pieces_with_it(tmp_path: Path) -> None:
     places: Sheet = [["Place", "Floor", "X [m]", "Y [m]"], ["Hall", "1", "far", 1], ["Door", "1", 9, 1]]
     routes: Sheet = [["Route", "Segment", "From", "To", "Clear width [m]"], ["Way", "a", "Hall", "Door", 1.2]]
     items = [[*ITEMS[0], "Route", "Segment"], [*ITEMS[1], "Way", "a"], ["A2", "1", 40, 180, None, None]]
@@ -160,7 +145,7 @@ def test_a_segment_that_is_left_out_takes_its_pieces_with_it(tmp_path: Path) -> 
     assert [one.place for one in inventory.places] == ["Door"]
 
 
-def test_reading_reports_and_obeys_a_cancel(tmp_path: Path) -> None:
+def test_reading_reports_obeys_a_cancel_and_says_errors_in_italian(tmp_path: Path) -> None:
     path, reports = write(tmp_path), list[Report]()
     read_inventory(path, progress=Progress(reports.append))
     assert [(one.stage, one.share) for one in reports] == [("reading", 0.0), ("reading", 0.5), ("reading", 1.0)]
@@ -171,9 +156,6 @@ def test_reading_reports_and_obeys_a_cancel(tmp_path: Path) -> None:
 
     with pytest.raises(CancelledError):
         read_inventory(path, progress=Progress(stop, cancel))
-
-
-def test_errors_can_be_said_in_italian(tmp_path: Path) -> None:
     floors: Sheet = [["Piano", "PFA X [g]"], ["1", 0.5]]
     items: Sheet = [["Elemento", "Piano", "Profondità [cm]", "Altezza [cm]"], ["A1", "9", 40, 1.8]]
     with pytest.raises(WorkbookError) as caught:

@@ -26,7 +26,7 @@ def floors_with(record: str, axis: str = "X") -> Sheet:
     return [["Floor", f"Record {axis}"], ["1", record]]
 
 
-def test_records(tmp_path: Path) -> None:
+def test_records_are_read_and_a_direction_that_is_not_known_is_asked_for(tmp_path: Path) -> None:
     (tmp_path / "records").mkdir()
     write_record(tmp_path / "one.csv")
     write_record(tmp_path / "records" / "two.csv", "time [s],NS [g],EW [g]")
@@ -37,9 +37,6 @@ def test_records(tmp_path: Path) -> None:
     assert [one.record.channel for one in records["X"]] == ["NS", "EW", "NS"]
     assert sorted(inventory.files) == ["one.csv", r"records\two.csv"]
     assert all(re.fullmatch("[0-9a-f]{64}", digest) for digest in inventory.files.values())
-
-
-def test_a_direction_that_is_not_known_is_asked_for(tmp_path: Path) -> None:
     write_record(tmp_path / "one.csv", "time [s],acceleration [g]")
     (warning,) = remarks(read(tmp_path, floors=floors_with("one.csv")), "warning")
     assert warning.startswith("Floors!B2: the direction of 'one.csv' is not known: is it horizontal?")
@@ -61,14 +58,6 @@ BAD_RECORDS = [
 ]
 
 
-def test_records_that_cannot_be_used(tmp_path: Path) -> None:
-    write_record(tmp_path / "two.csv", "time [s],NS [g],Up [g]")
-    (tmp_path / "noise.csv").write_text("no record", encoding="utf-8")
-    for record, message in BAD_RECORDS:
-        (error,) = errors_of(write(tmp_path, floors=floors_with(record)))
-        assert error.startswith(f"Floors!B2: {message}")
-
-
 OUTSIDE = [
     "../roof.csv", r"..\roof.csv", "sub/../../roof.csv", "/etc/passwd", r"\roof.csv", r"C:\roof.csv", "C:roof.csv",
     r"\\server\share\roof.csv", "//server/share/roof.csv", "file:///etc/passwd", "http://example.org/roof.csv",
@@ -76,15 +65,12 @@ OUTSIDE = [
 ]  # fmt: skip
 
 
-def test_records_outside_the_folder(tmp_path: Path) -> None:
+def test_records_that_cannot_be_used_and_links_that_lead_outside_the_folder(tmp_path: Path) -> None:
     floors = [["Floor", "Record X"], *([f"F{at}", record] for at, record in enumerate(OUTSIDE))]
     found = errors_of(write(tmp_path, [ITEMS[0], ["A1", "F0", 40, 180]], floors))
     assert len(found) == len(OUTSIDE)
     words = "is outside the workbook's folder. Copy it next to the workbook and write its name alone."
     assert [one for one in found if words not in one] == []
-
-
-def test_links_that_lead_outside(tmp_path: Path) -> None:
     inside = tmp_path / "inside"
     inside.mkdir()
     write_record(tmp_path / "roof.csv")
@@ -94,6 +80,11 @@ def test_links_that_lead_outside(tmp_path: Path) -> None:
         read(inside, floors=floors_with("link.csv"))
     with pytest.raises(WorkbookError, match=r"'circle.csv' (cannot be found under that name|was not found)"):
         read(inside, floors=floors_with("circle.csv"))
+    write_record(tmp_path / "two.csv", "time [s],NS [g],Up [g]")
+    (tmp_path / "noise.csv").write_text("no record", encoding="utf-8")
+    for record, message in BAD_RECORDS:
+        (error,) = errors_of(write(tmp_path, floors=floors_with(record)))
+        assert error.startswith(f"Floors!B2: {message}")
 
 
 def test_direction_of_records(tmp_path: Path) -> None:
@@ -112,7 +103,7 @@ UNSERVED = "Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA, or 
 NO_GROUND = "Building gives neither Ground PGA nor Ground PGV nor SDS nor a ShakeMap file nor Shaking."
 
 
-def test_a_floor_without_motion(tmp_path: Path) -> None:
+def test_a_floor_without_motion_is_an_error_unless_others_or_the_ground_serve_it(tmp_path: Path) -> None:
     floors: Sheet = [["Floor", "Elevation [m]", "PFA X [g]", "PFV X [cm/s]"], ["1", None, None, 30]]
     assert errors_of(write(tmp_path, floors=floors)) == {
         "Floors!C2: floor '1' has neither a record nor a PFA, no Elevation by which its motion follows from other "
@@ -129,14 +120,11 @@ def test_a_floor_without_motion(tmp_path: Path) -> None:
     ):
         path = write(tmp_path, floors=[floors[0], *rows], Building=[["Ground PGA [g]", ground]])
         assert {one.split(":")[0] for one in errors_of(path)} == cells
-
-
-def test_a_floor_without_motion_that_others_or_the_ground_serve(tmp_path: Path) -> None:
-    """What nothing can serve, whatever the scenario, is told with the other faults of the workbook."""
+    # What nothing can serve, whatever the scenario, is told with the other faults of the workbook.
     grounds = [["SDS [g]", 0.5], ["Ground PGA [g]", 0.2], ["Ground PGV [cm/s]", 20], ["Shaking", "JMA 7"]]
     served = [*((height, []) for height in (4, 12, -3)), *((None, [line]) for line in grounds)]
     for height, building in [*served, (None, [["Storeys", 4]])]:
-        floors: Sheet = [["Floor", "Elevation [m]", "PFA X [g]"], ["1", 3, 0.3], ["2", height, None], ["3", 8, 0.4]]
+        floors = [["Floor", "Elevation [m]", "PFA X [g]"], ["1", 3, 0.3], ["2", height, None], ["3", 8, 0.4]]
         path = write(tmp_path, [*ITEMS, ["A2", "9", 40, 180]], floors, Building=building)
         unserved = set() if (height, building) in served else {"Floors!C3"}
         assert {one.split(":")[0] for one in errors_of(path)} == {"Items!B3"} | unserved

@@ -12,7 +12,9 @@ from tests.workbook.books import ITEMS, Sheet, errors_of, read, read_item, remar
 TYPES: Sheet = [["Type", "Breadth [in]", "Width [in]", "Height [in]", "Source"], ["Locker", 12, 24, 72, "catalogue"]]
 
 
-def test_breadth_is_the_shorter_side_with_the_catalogue_too(tmp_path: Path) -> None:
+def test_sizes_are_exchanged_or_missing_where_those_of_the_type_say_so(
+    tmp_path: Path,
+) -> None:
     path = write(tmp_path, [["Item", "Floor", "Type", "Breadth [cm]"], ["A1", "1", "Locker", 70]],
                  Catalogue=[*TYPES, ["Bench", 30, 20, 40, ""]])  # fmt: skip
     assert errors_of(path) == {
@@ -20,9 +22,6 @@ def test_breadth_is_the_shorter_side_with_the_catalogue_too(tmp_path: Path) -> N
         "Catalogue!B3: Breadth 76.2 cm is greater than Width 50.8 cm. "
         "Breadth is the shorter plan side: exchange the two.",
     }
-
-
-def test_sizes_are_exchanged_where_those_of_the_type_say_so(tmp_path: Path) -> None:
     pairs = [(180, 40), (150, 60), (70, 60), (600, 30), (40, 180), (60.96, 200, 24)]
     header = ["Item", "Floor", "Type", "Breadth [cm]", "Height [cm]", "Width [in]"]
     items: Sheet = [header, *([f"A{at}", "1", "Rack", *pair] for at, pair in enumerate(pairs))]
@@ -35,9 +34,14 @@ def test_sizes_are_exchanged_where_those_of_the_type_say_so(tmp_path: Path) -> N
     assert remarks(read(tmp_path, [ITEMS[0], ["A1", "1", 180, 75]]), "warning") == {
         "Items!C2: Breadth 180 cm is greater than Height 75 cm. Are the two exchanged?"
     }
+    path = write(tmp_path, [["Item", "Floor", "Type"], ["A1", "1", "Shelf"]],
+                 Catalogue=[["Type", "Breadth [cm]"], ["Shelf", 30]])  # fmt: skip
+    assert errors_of(path) == {
+        "Items!A1: the column Height [cm] is missing, and row 2 has no Type that gives it. Add the column, or give those rows such a Type."
+    }
 
 
-def test_the_centre_of_gravity_is_the_rows_own_else_the_types_else_at_mid_height(tmp_path: Path) -> None:
+def test_the_centre_of_gravity_is_the_rows_own_else_the_types_and_the_axis_that_of_the_angle(tmp_path: Path) -> None:
     header = ["Item", "Floor", "Type", "Centre of gravity [%]"]
     types: Sheet = [["Type", "Breadth [cm]", "Height [cm]", "Centre of gravity [%]"], ["Rack", 60, 200, 60],
                     ["Desk", 70, 75, None]]  # fmt: skip
@@ -49,22 +53,18 @@ def test_the_centre_of_gravity_is_the_rows_own_else_the_types_else_at_mid_height
     assert [one.centre_of_gravity for one in inventory.catalogue] == [0.6, None]
     assert inventory.frame()["centre_of_gravity"].tolist() == pytest.approx([0.45, 0.6, 0.5], abs=1e-15)
     assert all(one.more == {} for one in inventory.items)
-
-
-ANGLES = [
-    (0, "X"), (15, "X"), (15.001, None), (-15, "X"), (45, None), (74.999, None), (75, "Y"), (90, "Y"), (105, "Y"),
-    (106, None), (164, None), (165, "X"), (180, "X"), (-90, "Y"), (270, "Y"), (360, "X"), (-345, "X"), (-344, None),
-]  # fmt: skip
-
-
-def test_axis_from_the_angle(tmp_path: Path) -> None:
-    """A given axis comes before it."""
     header = ["Item", "Floor", "Breadth [cm]", "Height [cm]", "Angle [deg]", "Axis"]
     rows = [[f"A{at}", "1", 40, 180, angle, None] for at, (angle, _) in enumerate(ANGLES)]
     *found, last = read(tmp_path, [header, *rows, ["B", "1", 40, 180, 90, "X"]]).items
     assert [one.axis for one in found] == [axis for _, axis in ANGLES] == [axis_of(angle) for angle, _ in ANGLES]
     assert ["axis" in one.assumed for one in found] == [axis is not None for _, axis in ANGLES]
     assert (last.axis, "axis" in last.assumed) == ("X", False)
+
+
+ANGLES = [
+    (0, "X"), (15, "X"), (15.001, None), (-15, "X"), (45, None), (74.999, None), (75, "Y"), (90, "Y"), (105, "Y"),
+    (106, None), (164, None), (165, "X"), (180, "X"), (-90, "Y"), (270, "Y"), (360, "X"), (-345, "X"), (-344, None),
+]  # fmt: skip
 
 
 def test_friction_of_the_building(tmp_path: Path) -> None:
@@ -82,53 +82,11 @@ def test_friction_of_the_building(tmp_path: Path) -> None:
     assert read_now.friction_of(read_now.items[0]) == 0.3
 
 
-def test_half_a_position(tmp_path: Path) -> None:
+def test_half_a_position_and_cells_of_a_row_that_contradict_each_other_are_warned_of(tmp_path: Path) -> None:
     header = [*ITEMS[0], "X [m]", "Y [m]", "Width [cm]"]
     inventory = read(tmp_path, [header, [*ITEMS[1], 1, None, 90], ["A2", "1", 40, 180, None, 2, 90]])
     message = "a position needs both X and Y. Fill in the other, or clear both."
     assert remarks(inventory, "warning") == {f"Items!F2: {message}", f"Items!E3: {message}"}
-
-
-def test_building(tmp_path: Path) -> None:
-    rows: Sheet = [["Building", "Town hall"], ["Storeys", 4], ["Height [ft]", 50], ["Period T1 [s]", 0.9],
-            ["Azimuth of X [deg]", 30], ["Scenario kind", "Given"], ["Ground PGA [m/s2]", 3], ["SDS [g]", 1],
-            ["Restitution", 0.9], ["Architect", "N. N."], ["Report language", None], [None, "stray"]]  # fmt: skip
-    inventory = read(tmp_path, Building=rows)
-    found = inventory.building
-    assert (found.building, found.storeys, found.period, found.azimuth_deg) == ("Town hall", 4, 0.9, 30)
-    assert (found.height, found.ground_pga, found.sds) == pytest.approx((15.24, 3, GRAVITY))
-    assert (found.scenario_kind, found.restitution, found.language, found.logo) == ("given", 0.9, "", None)
-    assert (found.cell("ground_pga"), found.cell("sds"), found.cell("friction")) == ("B7", "B8", "")
-    assert remarks(inventory, "note") == {"Building!A10: 'Architect' is not known; it is not used."}
-
-
-def test_the_uncertainties_and_the_velocity_of_the_ground(tmp_path: Path) -> None:
-    for motion, piece, is_uncertain in (
-        (0, "no", False), (1.5, " YES ", True), (0.6, True, True), (0.6, "sì", True), (0.6, False, False),
-    ):  # fmt: skip
-        rows: Sheet = [["Ground PGV [in/s]", 10], ["Motion uncertainty", motion], ["Piece uncertainty", piece]]
-        found = read(tmp_path, Building=rows).building
-        assert (found.motion_uncertainty, found.piece_uncertainty) == (motion, is_uncertain)
-        assert found.ground_pgv == pytest.approx(0.254)
-        assert (found.cell("ground_pgv"), found.cell("motion_uncertainty")) == ("B1", "B2")
-    rows = [["Ground PGV [cm/s]", None], ["Motion uncertainty", None], ["Piece uncertainty", None]]
-    for found in (read(tmp_path).building, read(tmp_path, Building=rows).building):
-        assert (found.ground_pgv, found.motion_uncertainty, found.piece_uncertainty) == (None, None, None)
-
-
-def test_weights_and_brackets_are_read_in_any_unit(tmp_path: Path) -> None:
-    sizes = ["Breadth [cm]", "Height [cm]", "Anchored"]
-    for units, cells, expected in (
-        (("kg", "cm", "kN"), [120, 170, 1.5], (120, 1.7, 1500)),
-        (("lb", "in", "lbf"), [100, 60, 250], (45.359237, 1.524, 1112.0554)),
-    ):
-        labels = zip(("Weight", "Bracket height", "Bracket capacity"), units, strict=True)
-        header = [*sizes, *(f"{label} [{unit}]" for label, unit in labels)]
-        found = read_item(tmp_path, header, [40, 180, "yes", *cells])
-        assert (found.weight, found.bracket_height, found.bracket_capacity) == pytest.approx(expected, rel=1e-6)
-
-
-def test_cells_of_a_row_that_contradict_each_other_are_warned_of(tmp_path: Path) -> None:
     header = [*ITEMS[0], "Axis", "Angle [deg]", "Anchored", "Bracket capacity [kN]"]
     rows: Sheet = [[*ITEMS[1], "X", 90], ["A2", "1", 40, 180, None, None, "no", 1]]
     messages = sorted(remarks(read(tmp_path, [header, *rows]), "warning"))
@@ -140,27 +98,49 @@ def test_cells_of_a_row_that_contradict_each_other_are_warned_of(tmp_path: Path)
     ]
 
 
-def test_no_assumption_where_all_is_given(tmp_path: Path) -> None:
+def test_building_its_uncertainties_and_the_velocity_of_the_ground(tmp_path: Path) -> None:
+    rows: Sheet = [["Building", "Town hall"], ["Storeys", 4], ["Height [ft]", 50], ["Period T1 [s]", 0.9],
+            ["Azimuth of X [deg]", 30], ["Scenario kind", "Given"], ["Ground PGA [m/s2]", 3], ["SDS [g]", 1],
+            ["Restitution", 0.9], ["Architect", "N. N."], ["Report language", None], [None, "stray"]]  # fmt: skip
+    inventory = read(tmp_path, Building=rows)
+    found = inventory.building
+    assert (found.building, found.storeys, found.period, found.azimuth_deg) == ("Town hall", 4, 0.9, 30)
+    assert (found.height, found.ground_pga, found.sds) == pytest.approx((15.24, 3, GRAVITY))
+    assert (found.scenario_kind, found.restitution, found.language, found.logo) == ("given", 0.9, "", None)
+    assert (found.cell("ground_pga"), found.cell("sds"), found.cell("friction")) == ("B7", "B8", "")
+    assert remarks(inventory, "note") == {"Building!A10: 'Architect' is not known; it is not used."}
+    for motion, piece, is_uncertain in (
+        (0, "no", False), (1.5, " YES ", True), (0.6, True, True), (0.6, "sì", True), (0.6, False, False),
+    ):  # fmt: skip
+        rows = [["Ground PGV [in/s]", 10], ["Motion uncertainty", motion], ["Piece uncertainty", piece]]
+        found = read(tmp_path, Building=rows).building
+        assert (found.motion_uncertainty, found.piece_uncertainty) == (motion, is_uncertain)
+        assert found.ground_pgv == pytest.approx(0.254)
+        assert (found.cell("ground_pgv"), found.cell("motion_uncertainty")) == ("B1", "B2")
+    rows = [["Ground PGV [cm/s]", None], ["Motion uncertainty", None], ["Piece uncertainty", None]]
+    for found in (read(tmp_path).building, read(tmp_path, Building=rows).building):
+        assert (found.ground_pgv, found.motion_uncertainty, found.piece_uncertainty) == (None, None, None)
+
+
+def test_weights_and_brackets_are_read_in_any_unit_and_nothing_is_assumed_where_all_is_given(tmp_path: Path) -> None:
+    sizes = ["Breadth [cm]", "Height [cm]", "Anchored"]
+    for units, cells, expected in (
+        (("kg", "cm", "kN"), [120, 170, 1.5], (120, 1.7, 1500)),
+        (("lb", "in", "lbf"), [100, 60, 250], (45.359237, 1.524, 1112.0554)),
+    ):
+        labels = zip(("Weight", "Bracket height", "Bracket capacity"), units, strict=True)
+        header = [*sizes, *(f"{label} [{unit}]" for label, unit in labels)]
+        found = read_item(tmp_path, header, [40, 180, "yes", *cells])
+        assert (found.weight, found.bracket_height, found.bracket_capacity) == pytest.approx(expected, rel=1e-6)
     header = ["Type", "Breadth [cm]", "Width [cm]", "Height [cm]", "Quantity", "Anchored", "Friction", "Axis"]
     found = read_item(tmp_path, header, ["Locker", 40, 60, 200, 2, "no", 0.4, "X"], Catalogue=TYPES)
     assert (found.assumed, found.friction, found.quantity) == ((), 0.4, 2)
-
-
-def test_a_type_without_that_size(tmp_path: Path) -> None:
-    path = write(tmp_path, [["Item", "Floor", "Type"], ["A1", "1", "Shelf"]],
-                 Catalogue=[["Type", "Breadth [cm]"], ["Shelf", 30]])  # fmt: skip
-    assert errors_of(path) == {
-        "Items!A1: the column Height [cm] is missing, and row 2 has no Type that gives it. Add the column, or give those rows such a Type."
-    }
-
-
-def test_a_centre_of_gravity_needs_its_unit(tmp_path: Path) -> None:
     known = "the column '{}' is not known. Did you mean Centre of gravity [%]?"
-    for header, message in {
+    for label, message in {
         "Centre of gravity": "Centre of gravity has no unit. Write the unit that the numbers are in",
         "Centre of gravity [cm]": "the unit 'cm' of Centre of gravity is not known. Write the unit that the numbers",
         "Centre of gravity %": known,
         "Center of gravity [%]": known,
     }.items():
-        (error,) = errors_of(write(tmp_path, [[*ITEMS[0], header], [*ITEMS[1], 45]]))
-        assert error.startswith(f"Items!E1: {message.format(header)}")
+        (error,) = errors_of(write(tmp_path, [[*ITEMS[0], label], [*ITEMS[1], 45]]))
+        assert error.startswith(f"Items!E1: {message.format(label)}")

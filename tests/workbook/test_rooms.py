@@ -30,20 +30,14 @@ def test_a_slip_is_told_once_with_its_pieces(tmp_path: Path) -> None:
     ]
 
 
-def test_what_is_no_slip_of_a_segments_room(tmp_path: Path) -> None:
+def test_what_is_no_slip_of_a_piece_and_what_is_a_slip_of_the_segment(tmp_path: Path) -> None:
     pieces = [("1", name, None) for name in ("corridor", "Kitchen", "Room 12", "Hal", "Hall", "Roof", "")]
     assert told(tmp_path, *pieces) == []
     assert told(tmp_path, ("2", "Coridor", None)) == [], "on another floor it keeps nothing away"
-
-
-def test_rooms_of_like_names_are_told_apart_by_their_words(tmp_path: Path) -> None:
     for room in ("South office; Corridor", "Corridor; South office"):
         assert told(tmp_path, ("1", "South office", None), ("1", "North office", None), room=room) == []
         (one,) = told(tmp_path, ("1", "South office", None), ("1", "Sout office", None), room=room)
         assert "Did you mean South office?" in one
-
-
-def test_a_slip_of_the_segment_is_told_there_alone(tmp_path: Path) -> None:
     (one,) = told(tmp_path, ("1", "Open office", None), room="Open ofice; Hall")
     assert one.startswith("warning Routes!F2: no piece is in room 'Open ofice'")
     assert "Did you mean Open office?" in one

@@ -14,45 +14,40 @@ from assess.workbook.read import open_workbook
 from assess.workbook.row_shift import Growth, RowShift, shift_formula, translate_formula
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
 from tests.workbook.raw import SHEET
-from tests.workbook.test_patch import minimal, parts_of
+from tests.workbook.test_patch import minimal
+from tests.workbooks import parts_of
 
 WORKBOOKS = Path(__file__).parents[1]
 INSERTED, DELETED = RowShift(5, 2), RowShift(5, -2)
 MOVED = [
-    ("A4+A5+$A$6", "A4+A7+$A$8", "A4+#REF!+#REF!"),
-    ("SUM(B2:B10)", "SUM(B2:B12)", "SUM(B2:B8)"),
-    ("SUM(B5:B6)", "SUM(B7:B8)", "SUM(#REF!)"),
-    ("SUM(B$4:$B5)", "SUM(B$4:$B7)", "SUM(B$4:$B4)"),
-    ("SUM(B6:B9)", "SUM(B8:B11)", "SUM(B5:B7)"),
-    ("SUM(5:7)+SUM($1:$3)", "SUM(7:9)+SUM($1:$3)", "SUM(5:5)+SUM($1:$3)"),
-    ("SUM(A:C)", "SUM(A:C)", "SUM(A:C)"),
-    ("Items!A9&'Items'!B9", "Items!A11&'Items'!B11", "Items!A7&'Items'!B7"),
+    ("A4+A5+$A$6", "A4+A7+$A$8", "A4+#REF!+#REF!"), ("SUM(B2:B10)", "SUM(B2:B12)", "SUM(B2:B8)"),
+    ("SUM(B5:B6)", "SUM(B7:B8)", "SUM(#REF!)"), ("SUM(B$4:$B5)", "SUM(B$4:$B7)", "SUM(B$4:$B4)"),
+    ("SUM(B6:B9)", "SUM(B8:B11)", "SUM(B5:B7)"), ("SUM(5:7)+SUM($1:$3)", "SUM(7:9)+SUM($1:$3)", "SUM(5:5)+SUM($1:$3)"),
+    ("SUM(A:C)", "SUM(A:C)", "SUM(A:C)"), ("Items!A9&'Items'!B9", "Items!A11&'Items'!B11", "Items!A7&'Items'!B7"),
     ("Other!A9+'My A9'!A9+[1]Items!A9", "Other!A9+'My A9'!A9+[1]Items!A9", "Other!A9+'My A9'!A9+[1]Items!A9"),
     ('"A9 and ""A9"""&A9', '"A9 and ""A9"""&A11', '"A9 and ""A9"""&A7'),
     ("LOG10(A9)+ATAN2(A9,B9)", "LOG10(A11)+ATAN2(A11,B11)", "LOG10(A7)+ATAN2(A7,B7)"),
-    ("Pieces[Cost]+Pieces[[#This Row],[A9]]",) * 3,
-    ("my_A9+A9.x+xA9",) * 3,
-    ("OFFSET(A9,1,1):B9", "OFFSET(A11,1,1):B11", "OFFSET(A7,1,1):B7"),
-    ("1E5+2.5E7",) * 3,
-]
+    ("Pieces[Cost]+Pieces[[#This Row],[A9]]",) * 3, ("my_A9+A9.x+xA9",) * 3,
+    ("OFFSET(A9,1,1):B9", "OFFSET(A11,1,1):B11", "OFFSET(A7,1,1):B7"), ("1E5+2.5E7",) * 3,
+]  # fmt: skip
 
 
-def test_formulas_follow_the_cells_of_their_own_sheet() -> None:
+def test_formulas_and_areas_follow_the_cells() -> None:
     for before, inserted, deleted in MOVED:
         assert shift_formula(before, "Items", True, INSERTED) == inserted
         assert shift_formula(before, "Items", True, DELETED) == deleted
-
-
-def test_formulas_of_other_sheets_follow_by_the_name_of_the_sheet() -> None:
     text = "A9+Items!A9+items!$A$9:B$12+'Items'!A9"
     assert shift_formula(text, "Items", False, INSERTED) == "A9+Items!A11+items!$A$11:B$14+'Items'!A11"
     assert shift_formula("'R&D ''5'''!A9", "R&D '5'", False, INSERTED) == "'R&D ''5'''!A11"
-
-
-def test_a_formula_is_filled_in_below() -> None:
     assert translate_formula("C4*$D$4+C$4&$C4", 2) == "C6*$D$4+C$4&$C6"
     assert translate_formula("B4:C5+A$1", 1, 2) == "D5:E6+C$1"
     assert translate_formula("A1+Items!B2", -1) == "#REF!+Items!B1"
+    assert INSERTED.area((1, 2, 1, 1_048_576)) == (1, 2, 1, 1_048_576)
+    assert DELETED.area((1, 2, 5, 6)) is None
+    assert DELETED.area((1, 2, 4, 6)) == (1, 2, 4, 4)
+    assert DELETED.area((1, 2, 6, 9)) == (1, 2, 5, 7)
+    assert Growth(((7, 9, frozenset({0})),)).area((1, 2, 1, 6)) == (1, 2, 1, 9)
+    assert all(INSERTED.back(INSERTED.row(row) or 0) == row for row in range(1, 12))
 
 
 def _grid() -> bytes:
@@ -103,55 +98,41 @@ def _refs(data: bytes) -> dict[str, list[str]]:
     }
 
 
-def test_everything_follows_rows_that_are_inserted() -> None:
+def test_everything_follows_rows_that_are_inserted_and_what_is_about_deleted_rows_goes_with_them() -> None:
     data = open_workbook(GRID, "book.xlsx").insert_rows("Items", 4, 2, like=3).to_bytes()
     assert _refs(data) == {
         "formulas": ["C2*2", "C3*2", "C4*2", "C5*2", "C6*2", "C7*2", "C8*2", "SUM(Items!C2:C8)", "Items!C6"],
-        "areas": ["A1:D8", "F3:G6", "C2:C8", "B2:B8", "B6"],
-        "extension": ["C2:C8", "Items!C2:C8"],
-        "breaks": ["3"],
-        "comments": ["A3", "A7"],
-        "boxes": ["2", "6"],
-        "chart": ["Items!$C$2:$C$8"],
+        "areas": ["A1:D8", "F3:G6", "C2:C8", "B2:B8", "B6"], "extension": ["C2:C8", "Items!C2:C8"], "breaks": ["3"],
+        "comments": ["A3", "A7"], "boxes": ["2", "6"], "chart": ["Items!$C$2:$C$8"],
         "names": ["Items!$A$1:$D$8", "Items!$C$2:$C$8", "Items!$A$1:$D$8"],
-    }
+    }  # fmt: skip
     book = openpyxl.load_workbook(io.BytesIO(data))
     assert [book["Items"].cell(row, 1).value for row in range(1, 9)] == [
-        "Item",
-        "A1",
-        "A2",
-        None,
-        None,
-        "A3",
-        "A4",
-        "A5",
-    ]
+        "Item", "A1", "A2", None, None, "A3", "A4", "A5",
+    ]  # fmt: skip
     assert book["Items"]["A4"].font.bold, "new rows look as the one that they are like"
     assert book["Other"]["A3"].value == "Items!C4", "a text is no reference"
-
-
-def test_what_is_about_deleted_rows_goes_with_them() -> None:
     data = open_workbook(GRID, "book.xlsx").delete_rows("Items", 3, 2).to_bytes()
     assert _refs(data) == {
-        "formulas": ["C2*2", "C3*2", "C4*2", "SUM(Items!C2:C4)", "Items!#REF!"],
-        "areas": ["A1:D4", "C2:C4", "B2:B4"],
-        "extension": ["C2:C4", "Items!C2:C4"],
-        "breaks": [],
-        "comments": ["A3"],
-        "boxes": ["2"],
-        "chart": ["Items!$C$2:$C$4"],
-        "names": ["Items!$A$1:$D$4", "Items!$C$2:$C$4", "Items!$A$1:$D$4"],
-    }
+        "formulas": ["C2*2", "C3*2", "C4*2", "SUM(Items!C2:C4)", "Items!#REF!"], "areas": ["A1:D4", "C2:C4", "B2:B4"],
+        "extension": ["C2:C4", "Items!C2:C4"], "breaks": [], "comments": ["A3"], "boxes": ["2"],
+        "chart": ["Items!$C$2:$C$4"], "names": ["Items!$A$1:$D$4", "Items!$C$2:$C$4", "Items!$A$1:$D$4"],
+    }  # fmt: skip
     assert b"<mergeCells" not in parts_of(data)[SHEET], "an empty list is no valid XML for Excel"
 
 
-def test_rows_that_are_filled_in_below_join_what_ends_above_them() -> None:
+def test_rows_that_are_filled_in_below_join_what_ends_above_them_and_a_table_keeps_its_totals() -> None:
     book = open_workbook(GRID, "book.xlsx")
     found = _refs(book.set({"Items": {(7, 0): "A6", (8, 0): "A7", (8, 2): 70}}).to_bytes())
     assert found["areas"] == ["A1:D8", "F3:G4", "C2:C8", "B2:B8", "B4"]
     assert found["extension"] == ["C2:C8", "Items!C2:C6"]
     assert found["names"] == ["Items!$A$1:$D$8", "Items!$C$2:$C$6", "Items!$A$1:$D$8"]
     assert _refs(book.set({"Items": {(9, 0): "apart"}}).to_bytes()) == _refs(GRID), "a row apart joins nothing"
+    assert _table({(5, 0): "d", (6, 1): 2}, totals=False) == "A1:B6; A1:B6"
+    assert _table({(5, 4): "in another column"}, totals=False) == "A1:B4; A1:B4"
+    assert _table({(5, 0): "d"}, totals=True) == "A1:B4; A1:B3"
+    with pytest.raises(WorkbookError, match="it is in the totals row of a table"):
+        _table({(4, 0): "d"}, totals=True)
 
 
 def _table(changes: dict[tuple[int, int], float | str | bool | None], *, totals: bool) -> str:
@@ -165,19 +146,14 @@ def _table(changes: dict[tuple[int, int], float | str | bool | None], *, totals:
     return "; ".join(re.findall('ref="([^"]*)"', parts_of(data)["xl/tables/table1.xml"].decode()))
 
 
-def test_a_table_grows_by_rows_in_its_own_columns_and_keeps_its_totals() -> None:
-    assert _table({(5, 0): "d", (6, 1): 2}, totals=False) == "A1:B6; A1:B6"
-    assert _table({(5, 4): "in another column"}, totals=False) == "A1:B4; A1:B4"
-    assert _table({(5, 0): "d"}, totals=True) == "A1:B4; A1:B3"
-    with pytest.raises(WorkbookError, match="it is in the totals row of a table"):
-        _table({(4, 0): "d"}, totals=True)
-
-
-def test_two_validations_never_come_to_overlap() -> None:
+def test_validations_never_come_to_overlap_and_shared_formulas_get_their_own_texts() -> None:
     tail = '<dataValidations count="2"><dataValidation sqref="A1:A2"/><dataValidation sqref="A3:A9"/></dataValidations>'
     data = minimal('<sheetData><row r="1"><c r="A1"><v>1</v></c></row></sheetData>', tail=tail)
     after = parts_of(open_workbook(data, "book.xlsx").set({"Items": {(3, 0): 3}}).to_bytes())
     assert tail.encode() in after[SHEET]
+    data = open_workbook(minimal(SHARED), "book.xlsx").insert_rows("Items", 3, like=2).to_bytes()
+    texts = re.findall("<f[^>]*>([^<]*)</f>", parts_of(data)[SHEET].decode())
+    assert texts == ["A1*2+$A$5", "A2*2+$A$5", "A3*2+$A$5", "A4*2+$A$5", "A5*2+$A$5"]
 
 
 SHARED = (
@@ -186,12 +162,6 @@ SHARED = (
     '<row r="3"><c r="A3"><v>3</v></c><c r="B3"><f t="shared" si="0"/><v>6</v></c></row>'
     '<row r="4"><c r="A4"><v>4</v></c><c r="B4"><f t="shared" si="0"></f><v>8</v></c></row></sheetData>'
 )
-
-
-def test_shared_formulas_get_their_own_texts() -> None:
-    data = open_workbook(minimal(SHARED), "book.xlsx").insert_rows("Items", 3, like=2).to_bytes()
-    texts = re.findall("<f[^>]*>([^<]*)</f>", parts_of(data)[SHEET].decode())
-    assert texts == ["A1*2+$A$5", "A2*2+$A$5", "A3*2+$A$5", "A4*2+$A$5", "A5*2+$A$5"]
 
 
 REFUSED = {
@@ -248,12 +218,3 @@ def test_sheets_are_found_by_names_that_formulas_quote() -> None:
         book.add_worksheet("Other").write_formula("A1", "='Joe''s R&D'!A3", None, 3)
     data = open_workbook(packed.getvalue(), "book.xlsx").insert_rows("Joe's R&D", 2).to_bytes()
     assert openpyxl.load_workbook(io.BytesIO(data))["Other"]["A1"].value == "='Joe''s R&D'!A4"
-
-
-def test_areas() -> None:
-    assert INSERTED.area((1, 2, 1, 1_048_576)) == (1, 2, 1, 1_048_576)
-    assert DELETED.area((1, 2, 5, 6)) is None
-    assert DELETED.area((1, 2, 4, 6)) == (1, 2, 4, 4)
-    assert DELETED.area((1, 2, 6, 9)) == (1, 2, 5, 7)
-    assert Growth(((7, 9, frozenset({0})),)).area((1, 2, 1, 6)) == (1, 2, 1, 9)
-    assert all(INSERTED.back(INSERTED.row(row) or 0) == row for row in range(1, 12))

@@ -110,8 +110,6 @@ def test_what_is_held_reads_as_the_bytes_do(first: dict[Any, Any], second: dict[
         assert _read(held) == _read_bytes(data)
 
 
-# ---------------------------------------------------------------- any edit of any workbook
-
 RICH = sorted(one for folder in ("nets/workbooks", "data/workbooks") for one in (TESTS / folder).glob("*.xls[xm]"))
 SOME = [None, None, True, False, 7, -2.5, 1e15, 45000.25, 0.3, "", " x ", "45 cm", "=1+1", "<b>&\"'", "_x0041_", "a\r\nb",
         "\u200b", "è" * 40, "12,5 %", "2024-05-01"]  # fmt: skip
@@ -177,7 +175,7 @@ def test_any_edits_of_a_rich_workbook_read_as_they_were_made(path: Path) -> None
                     ElementTree.fromstring(archive.read(part))
 
 
-def test_what_was_held_stays() -> None:
+def test_what_was_held_stays_and_is_written_back_as_it_was_read() -> None:
     held = open_workbook(ODD, "inventory.xlsx")
     before = _read(held)
     changed = held.set({"Items": {(2, 2): 50, (30, 0): "new", (3, 0): None}})
@@ -187,10 +185,7 @@ def test_what_was_held_stays() -> None:
     assert list(changed.sheets["Items"].cells) == sorted(changed.sheets["Items"].cells)
     assert _read(changed) != before
     assert _read(held) == before
-
-
-def test_a_value_that_was_read_is_written_back() -> None:
-    """A date that an edit replaced returns as the number that its cell shows as a date."""
+    # A date that an edit replaced returns as the number that its cell shows as a date.
     held = open_workbook(ODD, "inventory.xlsx")
     cells = held.sheets["Items"]
     places = [(3, 4), (4, 5), (5, 6), (2, 0), (6, 5)]
@@ -281,9 +276,7 @@ def test_a_drawing_is_read_once_whatever_the_width_of_the_plan(named: Path, monk
     [("MOST_PHOTOS", 1), ("MOST_PHOTO_BYTES", 700), ("MOST_PICTURE_PIXELS", 2000), ("MOST_RECORD_BYTES", 1000),
      ("MOST_RECORD_SAMPLES", 10)],
 )  # fmt: skip
-def test_limits_hold_for_files_that_were_kept(
-    named: Path, monkeypatch: pytest.MonkeyPatch, limit: str, most: int
-) -> None:
+def test_limits_hold_for_kept_files(named: Path, monkeypatch: pytest.MonkeyPatch, limit: str, most: int) -> None:
     kept, data = KeptFiles(), (named / "book.xlsx").read_bytes()
     assert not _read_kept(named, kept).problems
     monkeypatch.setattr(f"assess.workbook.kept_files.{limit}", most)

@@ -40,46 +40,27 @@ NUMBERS: dict[tuple[Column, str, str], dict[str, float]] = {
     (HEIGHT, "cm", "text"): {" 180": 180, "180\u00a0": 180, "1.8e2": 180, "'200": 200},
     (HEIGHT, "cm", "thousands"): {"1\u202f800,5": 1800.5, "1.234,5": 1234.5, "1,234.5": 1234.5,
         "1.234.567": 1234567, "1 234,567": 1234.567},
-    (HEIGHT, "cm", "signs"): {"１８０": 180, "\u2019200": 200},
-    (X, "m", "text"): {"'-1.5": -1.5, "+3": 3},
-    (X, "m", "comma"): {"\u22121,5": -1.5},
-    (X, "m", "signs"): {"\u2013 3": -3},
-    (HEIGHT, "ft", "unit"): {"5 feet 6 inches": 5.5, '66"': 5.5},
-    (X, "ft", "unit"): {"-1' 6\"": -1.5},
+    (HEIGHT, "cm", "signs"): {"１８０": 180, "\u2019200": 200}, (X, "m", "text"): {"'-1.5": -1.5, "+3": 3},
+    (X, "m", "comma"): {"\u22121,5": -1.5}, (X, "m", "signs"): {"\u2013 3": -3},
+    (HEIGHT, "ft", "unit"): {"5 feet 6 inches": 5.5, '66"': 5.5}, (X, "ft", "unit"): {"-1' 6\"": -1.5},
     (WEIGHT, "kg", "unit"): {"12 kg": 12, "10 lbs": 4.5359237},
     (FRICTION, "", "comma"): {"0,15": 0.15, "0,150": 0.15, ",150": 0.15, "012,500": 12.5, "1234,500": 1234.5},
-    (FRICTION, "", "text"): {"0.150": 0.15},
-    (FRICTION, "", "percent"): {"40 %": 0.4},
-    (CENTRE, "%", "unit"): {"45 %": 45},
-    (QUANTITY, "", "text"): {"12": 12},
+    (FRICTION, "", "text"): {"0.150": 0.15}, (FRICTION, "", "percent"): {"40 %": 0.4},
+    (CENTRE, "%", "unit"): {"45 %": 45}, (QUANTITY, "", "text"): {"12": 12},
     (PFA, "g", "percent"): {"15 %": 0.15, "15 %g": 0.15},
     (PFA, "m/s2", "percent"): {"15 % g": float(f"{0.15 * GRAVITY:.12g}")},
     (PFA, "g", "unit"): {"1.5 m/s²": float(f"{1.5 / GRAVITY:.12g}"), "0.15 G": 0.15},
-    (ANGLE, "deg", "unit"): {"15°": 15},
-    (PERIOD, "s", "unit"): {"0,9 s": 0.9},
+    (ANGLE, "deg", "unit"): {"15°": 15}, (PERIOD, "s", "unit"): {"0,9 s": 0.9},
 }  # fmt: skip
 """By column, unit of its header and habit: texts, and the numbers that they are taken for."""
 
 
-def test_numbers_as_they_are_typed() -> None:
+def test_numbers_as_they_are_typed_texts_that_are_none_and_what_is_ambiguous() -> None:
     for (column, unit, habit), numbers in NUMBERS.items():
         assert {text: meant(column, text, unit) for text in numbers} == {
             text: (number, habit) for text, number in numbers.items()
         }
-
-
-NO_NUMBERS = [
-    "45 kg", "about 45", "40-45", "40 x 60", "1.2.3", "1,2,3", "12,34,567", "1.234,5.6", "4²", "½", "45 cm²", "1e999",
-    "0e999", "١,٥٠٠", "9" * 400, "#N/A", "--3", "high", "%", "'high", "''200", "'200'", "'", "5' 11", "1'800\"",
-    "5' 12\"", "5 11\"", "5.5' 3\"", "1.125\"", "\"",
-]  # fmt: skip
-
-
-def test_texts_that_are_no_number_of_the_column() -> None:
     assert {text: meant(HEIGHT, text) for text in NO_NUMBERS} == {text: (text, "") for text in NO_NUMBERS}
-
-
-def test_one_separator_before_three_digits_is_ambiguous() -> None:
     for column, text, one, other in (
         (HEIGHT, "1,500", "1.5 cm", "1500 cm"), (HEIGHT, "1.500", "1.5 cm", "1500 cm"),
         (HEIGHT, "-12,345", "-12.345 cm", "-12345 cm"), (HEIGHT, "1,500 mm", "0.15 cm", "150 cm"),
@@ -90,9 +71,11 @@ def test_one_separator_before_three_digits_is_ambiguous() -> None:
         assert f"which can be read as {one} or as {other}." in caught.value.message
 
 
-def _format(number: float, digits: int, point: str, mark: str) -> str:
-    """Write a number with a decimal sign and a sign between thousands."""
-    return f"{number:,.{digits}f}".translate({ord(","): mark, ord("."): point})
+NO_NUMBERS = [
+    "45 kg", "about 45", "40-45", "40 x 60", "1.2.3", "1,2,3", "12,34,567", "1.234,5.6", "4²", "½", "45 cm²", "1e999",
+    "0e999", "١,٥٠٠", "9" * 400, "#N/A", "--3", "high", "%", "'high", "''200", "'200'", "'", "5' 11", "1'800\"",
+    "5' 12\"", "5 11\"", "5.5' 3\"", "1.125\"", "\"",
+]  # fmt: skip
 
 
 UNITS = [(column, unit) for column in (HEIGHT, WEIGHT, PFA, X, CENTRE) for unit in QUANTITIES[column.quantity]]
@@ -114,8 +97,9 @@ def test_a_number_written_in_any_accepted_way_reads_back(
     """What it is converted to is compared in the header's unit, in 11 digits."""
     column, unit = where
     number = float(f"{thousandths / 1000:.{digits}f}")
-    text = _format(number, digits, *signs)
-    if digits == 0 and text.count(signs[1] or "none") == 1 and signs[1] in (",", "."):
+    point, mark = signs
+    text = f"{number:,.{digits}f}".translate({ord(","): mark, ord("."): point})
+    if digits == 0 and text.count(mark or "none") == 1 and mark in (",", "."):
         return  # "1,500" is ambiguous
     text = text.replace("-", minus)
     if is_wide:
@@ -167,11 +151,16 @@ CHOICES = [
 ]  # fmt: skip
 
 
-def test_choices_as_they_are_typed() -> None:
+def test_choices_and_dates_as_they_are_typed_and_dates_that_are_wrong() -> None:
     for column, text, choice, word in CHOICES:
         assert find_meant(text, column.choices, "en") == (choice, word), (column.name, text)
     anchored = translate(ITEMS, "it").column("anchored").choices
     assert [find_meant(text, anchored, "it")[1] for text in ("s", "N", "in p", "y")] == ["sì", "no", "in parte", "sì"]
+    assert {text: meant(DATE, text) for text, *_ in DATES} == {text: (date, habit) for text, date, habit in DATES}
+    for text, why in WRONG_DATES.items():
+        with pytest.raises(CellError) as caught:
+            meant(DATE, text)
+        assert str(caught.value.message).endswith(why)
 
 
 DATES = [
@@ -184,10 +173,6 @@ DATES = [
 ]  # fmt: skip
 
 
-def test_dates_as_they_are_typed() -> None:
-    assert {text: meant(DATE, text) for text, *_ in DATES} == {text: (date, habit) for text, date, habit in DATES}
-
-
 WRONG_DATES = {
     "31/02/2026": "which is not a date: month 2 of 2026 has 28 days.",
     "02/31/2028": "which is not a date: month 2 of 2028 has 29 days.",
@@ -198,14 +183,7 @@ WRONG_DATES = {
 }
 
 
-def test_dates_that_are_wrong() -> None:
-    for text, why in WRONG_DATES.items():
-        with pytest.raises(CellError) as caught:
-            meant(DATE, text)
-        assert str(caught.value.message).endswith(why)
-
-
-def test_every_cell_that_is_taken_has_a_note_and_a_correction(tmp_path: Path) -> None:
+def test_every_cell_that_is_taken_has_a_note_and_a_correction_and_rows_in_code_have_none(tmp_path: Path) -> None:
     """Those typed as asked for have none."""
     items: Sheet = [["Item", "Floor", "Breadth [cm]", "Height [cm]", "Anchored", "Against wall", "Notes"],
                     ["A1", "B\u20131", "45 cm", "1.80 m", "N", True, "x"], ["A2", "B-1 ", 45.5, "'200", True, "no", 4],
@@ -237,9 +215,6 @@ def test_every_cell_that_is_taken_has_a_note_and_a_correction(tmp_path: Path) ->
         "Building!B1: Report date is 'after Easter', which is not read as a date; it is shown as typed. "
         "Write it as year-month-day: 2026-12-31."
     }
-
-
-def test_rows_in_code_are_taken_without_corrections() -> None:
     rows = {"Items": [{"item": "A1", "floor": "1", "breadth": "45 cm", "height": 180}],
             "Floors": [{"floor": "1", "pfa_x": 0.5}]}  # fmt: skip
     inventory = read_inventory(rows)

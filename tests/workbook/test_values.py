@@ -142,10 +142,14 @@ UNUSUAL = [
 ]
 
 
-def test_unusual_numbers_are_warned_of(tmp_path: Path) -> None:
+def test_unusual_numbers_and_a_formula_without_address_are_reported_where_they_stand(
+    tmp_path: Path,
+) -> None:
     for sheet, header, value, message in UNUSUAL:
         found = remarks(read_inventory(write_one(tmp_path, sheet, header, value)), "warning")
         assert found == {f"{sheet}!{CELLS[sheet]}: {message} Check the number and the unit."}
+    path = change_parts(write(tmp_path), {SHEET: replace('<c r="D2" t="n"><v>180</v>', "<c><f>2*90</f>")})
+    assert errors_of(path) == {f"Items!D2: {NO_VALUE}"}
 
 
 @pytest.mark.parametrize("unit", ["mm", "cm", "m", "in", "ft"])
@@ -158,16 +162,13 @@ def test_a_limit_itself_is_allowed_in_every_unit(tmp_path: Path, unit: str) -> N
     assert [one.height for one in found.items] == pytest.approx([limit / 100 for limit in limits])
 
 
-def test_floor_names_of_every_kind(tmp_path: Path) -> None:
+def test_floor_names_of_every_kind_and_letter_case(tmp_path: Path) -> None:
     """As they are typed in Items, in Floors, and as they are read."""
     names = [(42.0, "42", "42"), ("42", 42, "42"), (" 42 ", "42", "42"), (4.5, 4.5, "4.5"),
              ("E\u0301tage  1", "Étage 1", "Étage 1"), ("b1", "B1", "B1"), ("B\u20131", "B-1", "B-1")]  # fmt: skip
     for typed, defined, name in names:
         inventory = read(tmp_path, [ITEMS[0], ["A1", typed, 40, 180]], [FLOORS[0], [defined, 0.5]])
         assert inventory.items[0].floor == inventory.floors[0].floor == name
-
-
-def test_names_are_compared_without_letter_case(tmp_path: Path) -> None:
     floors = [FLOORS[0], ["Ground", 0.5], ["GROUND ", 0.6]]
     assert errors_of(write(tmp_path, [ITEMS[0], ["A1", "ground", 40, 180], ["A2", "Grond", 40, 180]], floors)) == {
         "Floors!A3: duplicate Floor 'GROUND', also in A2. Give each its own name.",
@@ -177,17 +178,11 @@ def test_names_are_compared_without_letter_case(tmp_path: Path) -> None:
 
 
 TEXTS = [
-    ("bell\x07", "bell\ufffd", 1),
-    ("_x0007_", "\ufffd", 1),
-    ("\u202egnp.exe", "gnp.exe", 1),
-    ("a\u200eb\u2066c\u2069", "abc", 3),
-    ("zero\u200b width", "zero width", 1),
-    ("two\nlines\tand a tab", "two\nlines\tand a tab", 0),
-    ("carriage\r\nreturn", "carriage\nreturn", 0),
-    ("=1+1", "=1+1", 0),
-    ("<b>&amp;</b>", "<b>&amp;</b>", 0),
-    ("家具 ✓ ß", "家具 ✓ ß", 0),
-]
+    ("bell\x07", "bell\ufffd", 1), ("_x0007_", "\ufffd", 1), ("\u202egnp.exe", "gnp.exe", 1),
+    ("a\u200eb\u2066c\u2069", "abc", 3), ("zero\u200b width", "zero width", 1),
+    ("two\nlines\tand a tab", "two\nlines\tand a tab", 0), ("carriage\r\nreturn", "carriage\nreturn", 0),
+    ("=1+1", "=1+1", 0), ("<b>&amp;</b>", "<b>&amp;</b>", 0), ("家具 ✓ ß", "家具 ✓ ß", 0),
+]  # fmt: skip
 
 
 def test_texts_are_cleaned(tmp_path: Path) -> None:
@@ -239,8 +234,3 @@ def test_formulas_without_a_saved_result(tmp_path: Path, prefix: str) -> None:
         path.write_bytes(sound)
         change_parts(path, {SHEET: replace("<v>180</v>", formula)})
         assert errors_of(change_parts(path, {SHEET: rename})) == expected, formula
-
-
-def test_a_formula_without_result_or_address_is_reported_where_it_stands(tmp_path: Path) -> None:
-    path = change_parts(write(tmp_path), {SHEET: replace('<c r="D2" t="n"><v>180</v>', "<c><f>2*90</f>")})
-    assert errors_of(path) == {f"Items!D2: {NO_VALUE}"}
