@@ -45,34 +45,25 @@ def test_moveable_components_become_pieces_with_room_floor_and_identifier(tmp_pa
     assert any("do not record fixings or positions: fill in Anchored" in one for one in found.remarks)
 
 
-@pytest.mark.parametrize(
-    ("unit", "size", "cm"),
-    [
+def test_units_and_numbers_stored_as_texts_and_a_unit_of_impossible_sizes(tmp_path: Path) -> None:
+    for unit, size, cm in (
         ("millimeters", 2000, 200), ("Millimetres", "2000.0", 200), ("mm", 2000, 200), ("centimeters", 200, 200),
         ("Meters", 2, 200), ("metre", "2.0", 200), ("feet", 6, 182.88), ("Inches", 81, 205.74),
         ("millimeters", "914.400", 91.44),  # of a program: a point, never thousands
         ("millimeters", "2e3", 200),
-    ],
-)  # fmt: skip
-def test_units_and_numbers_stored_as_texts(tmp_path: Path, unit: str, size: Any, cm: float) -> None:
-    sizes = dict.fromkeys(("NominalLength", "NominalWidth", "NominalHeight"), size)
-    found = _read(tmp_path, facility={"LinearUnits": unit}, **one_type(**sizes))
-    assert found.items[0]["height"] == found.items[0]["breadth"] == cm
-
-
-@pytest.mark.parametrize(
-    ("unit", "size", "message"),
-    [
+    ):  # fmt: skip
+        sizes = dict.fromkeys(("NominalLength", "NominalWidth", "NominalHeight"), size)
+        found = _read(tmp_path, facility={"LinearUnits": unit}, **one_type(**sizes))
+        assert found.items[0]["height"] == found.items[0]["breadth"] == cm, (unit, size)
+    for unit, scale, message in (
         ("feet", 1.0, r"LinearUnits is 'feet', but all sizes of furniture are out of range in that unit: "
                       r"NominalLength of 'Bookcase A' would be 900 ft\. Check LinearUnits: in mm most of them are"),
         ("millimeters", 0.001, r"would be 0\.9 mm\. Check LinearUnits: in m, ft most of them are in range"),
-    ],
-)  # fmt: skip
-def test_a_unit_of_impossible_sizes_is_refused(tmp_path: Path, unit: str, size: float, message: str) -> None:
-    sizes = {"NominalLength": 900 * size, "NominalWidth": 303 * size, "NominalHeight": 2000 * size}
-    with pytest.raises(WorkbookError, match=message) as caught:
-        _read(tmp_path, facility={"LinearUnits": unit}, **one_type(**sizes))
-    assert caught.value.problems[0].place == "Facility!G2"
+    ):  # fmt: skip
+        scaled = {"NominalLength": 900 * scale, "NominalWidth": 303 * scale, "NominalHeight": 2000 * scale}
+        with pytest.raises(WorkbookError, match=message) as caught:
+            _read(tmp_path, facility={"LinearUnits": unit}, **one_type(**scaled))
+        assert caught.value.problems[0].place == "Facility!G2", (unit, scale)
 
 
 BLANK, ODD = "AssetType is blank, so that it is not known whether they are furniture", "expected 50 to 6000 mm"
@@ -103,24 +94,28 @@ def test_a_type_that_cannot_be_taken_is_named(tmp_path: Path, values: dict[str, 
     assert (found.items, found.is_complete) == ([], False)
 
 
-@pytest.mark.parametrize(
-    ("change", "kind", "reason"),
-    [
+def test_components_that_lead_nowhere_are_reported_and_those_of_one_name_told_apart(tmp_path: Path) -> None:
+    for change, kind, reason in (
         ({"TypeName": "Bookcase Z"}, "Bookcase Z", "not in the sheet Type"),
         ({"TypeName": None}, "-", "TypeName is blank"),
         ({"Space": "n/a"}, "Bookcase A", "Space is blank, so that the floor is not known"),
         ({"Space": "X99"}, "Bookcase A", "its Space is not in the sheet Space"),
-    ],
-)
-def test_components_that_lead_nowhere_are_reported(tmp_path: Path, change: Any, kind: str, reason: str) -> None:
-    found = _read(tmp_path, components=({**COMPONENTS[0], **change}, COMPONENTS[1]))
-    ((own, number, why, is_furniture),) = _skipped(found)
-    assert (own, number, is_furniture) == (kind, 1, True)
-    assert why.startswith(reason)
-    assert len(found.items) == 1
+    ):
+        found = _read(tmp_path, components=({**COMPONENTS[0], **change}, COMPONENTS[1]))
+        ((own, number, why, is_furniture),) = _skipped(found)
+        assert (own, number, is_furniture) == (kind, 1, True), (change, kind)
+        assert why.startswith(reason), (change, kind)
+        assert len(found.items) == 1, (change, kind)
+    components = tuple({**COMPONENTS[0], "ExtIdentifier": f"id{at}"} for at in range(3))
+    other = {**COMPONENTS[1], "TypeName": "BOOKCASE  a", "Space": "g01"}
+    found = _read(tmp_path, components=(*components, other))
+    names = ["Bookcase A:1", "Bookcase A:1 (2)", "Bookcase A:1 (3)", "Bookcase A:2"]
+    assert [one["item"] for one in found.items] == names
+    assert [one["source_id"] for one in found.items[:3]] == ["id0", "id1", "id2"]
+    assert {(one["type"], one["room"]) for one in found.items} == {("Bookcase A", "G01")}
 
 
-def test_elevations_from_another_datum_and_basements_are_kept_and_warned_of(tmp_path: Path) -> None:
+def test_elevations_from_another_datum_are_kept_and_warned_of_and_wrong_ones_stay_blank(tmp_path: Path) -> None:
     """Counted from the lowest floor, the pieces of upper floors handed over alone would shake as at the ground."""
     floors = tuple({**one, "Elevation": 100_000 + one["Elevation"]} for one in FLOORS)
     found = _read(tmp_path, floors=floors)
@@ -133,24 +128,11 @@ def test_elevations_from_another_datum_and_basements_are_kept_and_warned_of(tmp_
     assert found.warnings[0].startswith(
         "Below the ground by their elevation, so that they shake as the ground does: Cell"
     )
-
-
-@pytest.mark.parametrize(("elevation", "count"), [("n/a", 1), ("high", 2), (10**9, 2)])
-def test_an_elevation_that_is_missing_or_wrong_stays_blank(tmp_path: Path, elevation: Any, count: int) -> None:
-    found = _read(tmp_path, floors=(FLOORS[0], {**FLOORS[1], "Elevation": elevation}))
-    assert [row.get("elevation") for row in found.floors if row["floor"] == "Upper"] == [None]
-    assert found.warnings[-1] == "No Elevation is given of: Upper."
-    assert len(found.warnings) == count
-
-
-def test_components_of_one_name_are_told_apart_and_names_compared_without_letter_case(tmp_path: Path) -> None:
-    components = tuple({**COMPONENTS[0], "ExtIdentifier": f"id{at}"} for at in range(3))
-    other = {**COMPONENTS[1], "TypeName": "BOOKCASE  a", "Space": "g01"}
-    found = _read(tmp_path, components=(*components, other))
-    names = ["Bookcase A:1", "Bookcase A:1 (2)", "Bookcase A:1 (3)", "Bookcase A:2"]
-    assert [one["item"] for one in found.items] == names
-    assert [one["source_id"] for one in found.items[:3]] == ["id0", "id1", "id2"]
-    assert {(one["type"], one["room"]) for one in found.items} == {("Bookcase A", "G01")}
+    for elevation, count in (("n/a", 1), ("high", 2), (10**9, 2)):
+        found = _read(tmp_path, floors=(FLOORS[0], {**FLOORS[1], "Elevation": elevation}))
+        assert [row.get("elevation") for row in found.floors if row["floor"] == "Upper"] == [None], (elevation, count)
+        assert found.warnings[-1] == "No Elevation is given of: Upper.", (elevation, count)
+        assert len(found.warnings) == count, (elevation, count)
 
 
 Sheets = dict[str, list[list[Any]]]
@@ -240,21 +222,19 @@ def test_a_million_rows_are_refused_in_bounded_memory(tmp_path: Path) -> None:
     assert "Component!A100001: the sheet has more than 100,000 rows." in done.stdout or "zip bomb" in done.stdout, done
 
 
-HOSTILE = (
-    '=HYPERLINK("http://x.example","y")', "+1+1", "@SUM(A1)", "<script>alert(1)</script>", "../../etc/passwd",
-    "a\u202eb\u0007c", "x" * 20_000, "{name} {0} %s", "'; DROP TABLE", "\U0001f4da",
-)  # fmt: skip
-
-
 def test_names_stay_text(tmp_path: Path) -> None:
-    types = [one_type(Name=name)["types"][0] for name in HOSTILE]
-    components = [{**COMPONENTS[0], "Name": name, "TypeName": name, "Space": name} for name in HOSTILE]
-    spaces = [{"Name": name, "FloorName": "Ground"} for name in HOSTILE]
+    hostile = (
+        '=HYPERLINK("http://x.example","y")', "+1+1", "@SUM(A1)", "<script>alert(1)</script>", "../../etc/passwd",
+        "a\u202eb\u0007c", "x" * 20_000, "{name} {0} %s", "'; DROP TABLE", "\U0001f4da",
+    )  # fmt: skip
+    types = [one_type(Name=name)["types"][0] for name in hostile]
+    components = [{**COMPONENTS[0], "Name": name, "TypeName": name, "Space": name} for name in hostile]
+    spaces = [{"Name": name, "FloorName": "Ground"} for name in hostile]
     sheets = make_sheets(types=types, components=components, spaces=spaces)
     path = write_shared(tmp_path / "c.xlsx", sheets, strings_to_formulas=False, strings_to_urls=False)
     (tmp_path / "w.xlsx").write_bytes(build_workbook(read_cobie(path, "c.xlsx")))
     items = read_inventory(tmp_path / "w.xlsx", building={"ground_pga": 0.3}).items
-    clean = [name.replace("\u202e", "").replace("\u0007", "\ufffd")[:120] for name in HOSTILE]
+    clean = [name.replace("\u202e", "").replace("\u0007", "\ufffd")[:120] for name in hostile]
     assert [(one.item, one.room, one.type) for one in items] == [(name, name, name) for name in clean]
     cells = [cell for row in load_workbook(tmp_path / "w.xlsx")["Items"].iter_rows() for cell in row]
     assert not [cell.value for cell in cells if cell.data_type == "f" and "HYPERLINK" in str(cell.value)]

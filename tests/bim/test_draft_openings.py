@@ -2,8 +2,6 @@
 
 from dataclasses import replace
 
-import pytest
-
 from assess.bim.building_model import BuildingModel, Space, Storey
 from assess.bim.draft_floor import build_plan, find_openings
 from tests.bim.office_models import door, piece, rectangle, room
@@ -30,18 +28,12 @@ def walls_but(low: float, high: float, x: float = 4.0) -> list[object]:
     return [rectangle(x, -0.1, x + 0.2, low), rectangle(x, high, x + 0.2, 4.1)]
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "found"),
-    [
+def test_a_gap_that_a_person_can_pass_is_an_opening_and_rooms_that_touch_are_open_to_each_other():
+    for low, high, found in (
         (0.0, 4.0, [({"a", "b"}, 4.1, 2.0, 4.0)]), (1.0, 2.0, [({"a", "b"}, 4.1, 1.5, 1.0)]),
         (1.0, 1.7, [({"a", "b"}, 4.1, 1.4, 0.7)]), (1.0, 1.4, []), (4.0, 4.0, []),
-    ],
-)  # fmt: skip
-def test_a_gap_in_a_wall_is_an_opening_where_a_person_can_pass(low, high, found):
-    assert find(model(*walls_but(low, high))) == found
-
-
-def test_what_is_shut_is_no_opening_rooms_that_touch_are_open_and_are_entered_where_no_furniture_stands():
+    ):  # fmt: skip
+        assert find(model(*walls_but(low, high))) == found, (low, high)
     to_the_middle = room("a", 0, 0, 4.1, 4), room("b", 4.1, 0, 8, 4)
     thin_wall, gap = rectangle(4.08, -0.1, 4.12, 4.1), walls_but(1.05, 1.95)
     assert find(model(rectangle(4.0, -0.1, 4.2, 4.1), spaces=to_the_middle)) == []

@@ -333,21 +333,15 @@ def test_every_number_comes_back(number):
     assert read_back(text) == number
 
 
-@pytest.mark.parametrize("end", ["\n", "\r\n"])
-def test_lines_stand_before_the_last_endsec_with_the_ends_of_the_file(end):
-    data = MODEL.replace(b"\n", end.encode())
-    found = append_lines(data, ["#2=A();", "#3=B();"], "m.ifc")
-    before, after = data[: data.rindex(b"ENDSEC;")], data[data.rindex(b"ENDSEC;") :]
-    assert found == before + f"#2=A();{end}#3=B();{end}".encode() + after
-
-
-def test_a_file_on_one_line_and_with_remarks_at_its_end_is_extended():
+def test_lines_stand_before_the_last_endsec_and_a_file_with_another_end_is_refused():
+    for end in ("\n", "\r\n"):
+        data = MODEL.replace(b"\n", end.encode())
+        found = append_lines(data, ["#2=A();", "#3=B();"], "m.ifc")
+        before, after = data[: data.rindex(b"ENDSEC;")], data[data.rindex(b"ENDSEC;") :]
+        assert found == before + f"#2=A();{end}#3=B();{end}".encode() + after, end
     data = b"ISO-10303-21;HEADER;ENDSEC;DATA;#1=A();ENDSEC ;/* a **remark** */ END-ISO-10303-21;"
     found = append_lines(data, ["#2=B();"], "m.ifc")
     assert found == data.replace(b"ENDSEC ;", b"\n#2=B();\nENDSEC ;")
-
-
-@pytest.mark.parametrize("end", [b"", b"ENDSEC;\n", b"END-ISO-10303-21;\n", b"ENDSEC;\n#9=A();\nEND-ISO-10303-21;\n"])
-def test_a_file_with_another_end_is_refused(end):
-    with pytest.raises(ModelError, match=r"m.ifc does not end as an IFC file does"):
-        append_lines(b"ISO-10303-21;\nDATA;\n#1=A();\n" + end, ["#2=B();"], "m.ifc")
+    for last in (b"", b"ENDSEC;\n", b"END-ISO-10303-21;\n", b"ENDSEC;\n#9=A();\nEND-ISO-10303-21;\n"):
+        with pytest.raises(ModelError, match=r"m.ifc does not end as an IFC file does"):
+            append_lines(b"ISO-10303-21;\nDATA;\n#1=A();\n" + last, ["#2=B();"], "m.ifc")

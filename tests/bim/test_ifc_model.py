@@ -119,19 +119,19 @@ def test_sizes_angles_and_supports_of_pieces_that_are_turned_askew_or_tilted(tmp
     assert (piece.support_breadth, piece.support_width) == pytest.approx((0.40, 1.46), abs=1e-4)
 
 
-@pytest.mark.parametrize("gross_first", [True, False])
-def test_a_piece_in_overlapping_spaces_stands_in_the_smallest_or_in_that_which_holds_it(tmp_path, gross_first):
+def test_a_piece_in_overlapping_spaces_stands_in_the_smallest_or_in_that_which_holds_it(tmp_path):
     """Some programs export the gross area of a storey as a space, too."""
-    model = ModelWriter()
-    storey = model.storey()
-    sizes = [(0, 0, 0, 20, 20, 3), (0, 0, 0, 6, 4, 3)]
-    spaces = {size[3]: model.space(storey, size) for size in (sizes if gross_first else sizes[::-1])}
-    model.piece("Shelf", SHELF, within=storey, at=(2, 1, 0))
-    model.piece("Shelf 2", SHELF, within=storey, at=(8, 8, 0))
-    model.piece("Held", SHELF, within=spaces[20], at=(2, 1, 0))
-    found = {one.name: one.space for one in read(model, tmp_path).pieces}
-    gross, room = spaces[20].GlobalId, spaces[6].GlobalId
-    assert found == {"Shelf": room, "Shelf 2": gross, "Held": gross}
+    for gross_first in (True, False):
+        model = ModelWriter()
+        storey = model.storey()
+        sizes = [(0, 0, 0, 20, 20, 3), (0, 0, 0, 6, 4, 3)]
+        spaces = {size[3]: model.space(storey, size) for size in (sizes if gross_first else sizes[::-1])}
+        model.piece("Shelf", SHELF, within=storey, at=(2, 1, 0))
+        model.piece("Shelf 2", SHELF, within=storey, at=(8, 8, 0))
+        model.piece("Held", SHELF, within=spaces[20], at=(2, 1, 0))
+        found = {one.name: one.space for one in read(model, tmp_path).pieces}
+        gross, room = spaces[20].GlobalId, spaces[6].GlobalId
+        assert found == {"Shelf": room, "Shelf 2": gross, "Held": gross}, gross_first
 
 
 @pytest.mark.parametrize("deep", [1.0, 0.2, None], ids=["thicker than wide", "thin", "no opening"])
@@ -238,26 +238,46 @@ def test_models_without_rooms_or_storeys_and_those_that_cannot_be_used_at_all(tm
             read(model, tmp_path)
 
 
-@pytest.mark.parametrize(
-    ("storeys", "elevations", "warned"),
-    [
+def test_elevations_placements_and_furniture_tell_where_the_floor_of_a_storey_is(tmp_path):
+    for storeys, elevations, warned in (
         ([("a", 0.0, 0.0), ("b", 3.0, 3.0), ("c", 6.0, 6.0)], [0, 3, 6], False),
         ([("a", 0.0, 100.0), ("b", 3.0, 103.0), ("c", None, 106.0)], [0, 3, 6], False),
         ([("a", 0.0, 0.0), ("b", 0.0, 3.0), ("c", 0.0, 6.0)], [0, 3, 6], True),
         ([("a", 0.0, 0.0), ("b", 3.0, 0.0), ("c", 6.0, 0.0)], [0, 3, 6], False),
         ([("a", None, -3.0), ("b", None, 0.0)], [-3, 0], False),
         ([("a", None, 3.5)], [3.5], False),
-    ],
-)
-def test_elevations_and_placements_of_storeys_agree_or_are_warned_of(tmp_path, storeys, elevations, warned):
-    model = ModelWriter()
-    for name, elevation, z in storeys:
-        model.storey(name, elevation, z)
-    found = read(model, tmp_path)
-    assert [one.name for one in found.storeys] == [name for name, _, _ in storeys]
-    assert [one.elevation for one in found.storeys] == pytest.approx(elevations)
-    told = "Elevation in the model differs from where these storeys are placed, which was taken: b, c."
-    assert any(told in text for text in found.warnings) == warned
+    ):
+        model = ModelWriter()
+        for name, elevation, z in storeys:
+            model.storey(name, elevation, z)
+        found = read(model, tmp_path)
+        assert [one.name for one in found.storeys] == [name for name, _, _ in storeys], (storeys, elevations)
+        assert [one.elevation for one in found.storeys] == pytest.approx(elevations), (storeys, elevations)
+        told = "Elevation in the model differs from where these storeys are placed, which was taken: b, c."
+        assert any(told in text for text in found.warnings) == warned, (storeys, elevations)
+    for levels in ((3.0,), (0.0, 3.0)):
+        model = ModelWriter()
+        for number, level in enumerate(levels):
+            storey = model.storey(f"L{number}", level, z=0.0)
+            model.piece("Shelf", SHELF, within=storey, at=(2, 1, level))
+        found = read(model, tmp_path)
+        assert [round(one.bottom, 3) for one in found.pieces] == [0] * len(levels), levels
+        assert [round(one.elevation, 3) for one in found.storeys] == [*levels], levels
+    for heights, taken in (
+        ((0.2, 0.2, 0.2), 3),  # a floor laid on the slab
+        ((1.4, 1.4, 1.4, 1.4), 0),  # hung on walls
+        ((0.2, 0.2), 0),  # too few to tell
+        ((0.0, 0.0, 0.0, 0.75), 3),  # one stands on a table
+    ):
+        model = ModelWriter()
+        storey = model.storey("L0", 0.0)
+        for number, height in enumerate(heights):
+            model.piece("Shelf", SHELF, within=storey, at=(2 * number, 1, height))
+        found = read(model, tmp_path)
+        assert len(found.pieces) == taken, (heights, taken)
+        assert sum("stands 0.20 m above where the model has its floor" in str(one) for one in found.warnings) == (
+            heights[0] == 0.2 and taken > 0
+        )
 
 
 @pytest.mark.parametrize("site", [0.0, 450.0])
@@ -269,38 +289,6 @@ def test_one_storey_placed_above_zero_keeps_its_furniture(tmp_path, site, elevat
     found = read(model, tmp_path)
     assert [(one.name, round(one.bottom, 3)) for one in found.pieces] == [("Shelf", 0)]
     assert not found.warnings
-
-
-@pytest.mark.parametrize("levels", [(3.0,), (0.0, 3.0)])
-def test_furniture_tells_the_floor_of_a_storey_that_is_not_placed(tmp_path, levels):
-    model = ModelWriter()
-    for number, level in enumerate(levels):
-        storey = model.storey(f"L{number}", level, z=0.0)
-        model.piece("Shelf", SHELF, within=storey, at=(2, 1, level))
-    found = read(model, tmp_path)
-    assert [round(one.bottom, 3) for one in found.pieces] == [0] * len(levels)
-    assert [round(one.elevation, 3) for one in found.storeys] == [*levels]
-
-
-@pytest.mark.parametrize(
-    ("heights", "taken"),
-    [
-        ((0.2, 0.2, 0.2), 3),  # a floor laid on the slab
-        ((1.4, 1.4, 1.4, 1.4), 0),  # hung on walls
-        ((0.2, 0.2), 0),  # too few to tell
-        ((0.0, 0.0, 0.0, 0.75), 3),  # one stands on a table
-    ],
-)
-def test_nearly_all_furniture_off_the_floor_by_one_height_moves_the_floor(tmp_path, heights, taken):
-    model = ModelWriter()
-    storey = model.storey("L0", 0.0)
-    for number, height in enumerate(heights):
-        model.piece("Shelf", SHELF, within=storey, at=(2 * number, 1, height))
-    found = read(model, tmp_path)
-    assert len(found.pieces) == taken
-    assert sum("stands 0.20 m above where the model has its floor" in str(one) for one in found.warnings) == (
-        heights[0] == 0.2 and taken > 0
-    )
 
 
 def test_the_parts_of_an_assembly_that_stand_on_each_other_are_one_piece(tmp_path):

@@ -23,23 +23,16 @@ def model(**more: object) -> BuildingModel:
     return BuildingModel(**{**values, **more})
 
 
-@pytest.mark.parametrize(
-    ("supports", "sizes", "angle", "is_inset"),
-    [
+def test_breadth_is_the_shortest_distance_between_outer_supports_of_which_those_off_the_middle_are_told():
+    for supports, sizes, angle, is_inset in (
         ((0.4, 0.8), (40.0, 80.0), 30.0, False), ((0.397, 0.8), (40.0, 80.0), 30.0, False),
         ((0.3, 0.8), (30.0, 80.0), 30.0, True), ((0.3, 0.35), (30.0, 80.0), 30.0, True),
         ((0.4, 0.25), (25.0, 40.0), -60.0, True), ((0.38, 0.25), (25.0, 40.0), -60.0, True),
-    ],
-)  # fmt: skip
-def test_breadth_is_the_shortest_distance_between_outer_supports(supports, sizes, angle, is_inset):
-    found = find_sizes(replace(PIECE, support_breadth=supports[0], support_width=supports[1]))
-    assert ((found.breadth, found.width), found.height) == (sizes, 190.0)
-    assert (found.angle_deg, found.is_inset) == (angle, is_inset)
-    assert found.breadth <= found.width
-
-
-def test_supports_off_the_middle_are_warned_of_and_an_oblique_edge_gives_the_direction_of_breadth():
-    """The plinth of a wardrobe is set back by 10 cm at its front only: its middle is 20 cm from that edge."""
+    ):  # fmt: skip
+        found = find_sizes(replace(PIECE, support_breadth=supports[0], support_width=supports[1]))
+        assert ((found.breadth, found.width), found.height) == (sizes, 190.0), (supports, sizes)
+        assert (found.angle_deg, found.is_inset) == (angle, is_inset), (supports, sizes)
+        assert found.breadth <= found.width, (supports, sizes)
     front = replace(PIECE, breadth=0.6, support_breadth=0.5, support_reach=0.2, support_angle_deg=30.0)
     found = find_sizes(front)
     assert (found.breadth, found.width, found.angle_deg, found.safe) == (50.0, 80.0, 30.0, 40.0)

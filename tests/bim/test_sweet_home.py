@@ -42,10 +42,6 @@ def home():
     return read_sweet_home(FILE.read_bytes(), FILE.name)
 
 
-def to_plan(corners):
-    return shapely.Polygon([(x / 100, -y / 100) for x, y in corners])
-
-
 def lay(x, y, across, along, angle_deg):
     """Return a rectangle by its centre and its sides: `across` lies in the direction of the angle."""
     box = shapely.box(x - across / 2, y - along / 2, x + across / 2, y + along / 2)
@@ -62,7 +58,7 @@ def test_pieces_cover_what_the_program_says(home):
     for name, corners in CORNERS.items():
         one = found[name]
         plan = lay(one.x, one.y, one.breadth, one.width, one.angle_deg)
-        assert share_alike(plan, to_plan(corners)) > 0.999, name
+        assert share_alike(plan, shapely.Polygon([(x / 100, -y / 100) for x, y in corners])) > 0.999, name
         assert one.breadth <= one.width
         assert (one.support_breadth, one.support_width) == (one.breadth, one.width)
     assert (found["Bookcase A"].height, found["Wardrobe"].height) == pytest.approx((2.11, 1.65))
@@ -99,7 +95,7 @@ def test_levels_rooms_stairs_doors_windows_and_north(home):
     assert {one.name: one.storey for one in home.pieces}["Wardrobe"] == upper
     for one in home.doors:
         plan = lay(one.x, one.y, one.thickness, one.width, one.normal_deg)
-        assert share_alike(plan, to_plan(DOOR_CORNERS[one.name])) > 0.999
+        assert share_alike(plan, shapely.Polygon([(x / 100, -y / 100) for x, y in DOOR_CORNERS[one.name]])) > 0.999
     assert [one.name for one in home.doors] == list(DOOR_CORNERS)
     ground, upper = (one.key for one in home.storeys)
     (window,) = home.windows[ground]
@@ -170,12 +166,9 @@ def test_homes_without_levels_with_a_hidden_group_with_a_round_wall_and_with_not
     assert (model.pieces, model.spaces, len(model.storeys)) == ((), (), 1)
 
 
-BOMB = b"<!DOCTYPE home [<!ENTITY a 'aaaaaaaaaa'><!ENTITY b '&a;&a;&a;&a;'>]><home name='&b;'/>"
-
-
-@pytest.mark.parametrize(
-    ("data", "said"),
-    [
+def test_what_cannot_be_read_or_is_too_much_is_refused(monkeypatch):
+    bomb = b"<!DOCTYPE home [<!ENTITY a 'aaaaaaaaaa'><!ENTITY b '&a;&a;&a;&a;'>]><home name='&b;'/>"
+    for data, said in (
         (b"", "h.sh3d is damaged"),
         (b"PK\x03\x04 no zip", "h.sh3d is damaged"),
         (FILE.read_bytes()[:3000], "h.sh3d is damaged"),
@@ -184,18 +177,13 @@ BOMB = b"<!DOCTYPE home [<!ENTITY a 'aaaaaaaaaa'><!ENTITY b '&a;&a;&a;&a;'>]><ho
         (pack(b"<house/>"), "h.sh3d is not a file of Sweet Home 3D"),
         (pack(home_xml()[:-400]), "its Home.xml cannot be read. Open it with Sweet Home 3D, and save it again."),
         (pack(b"\xff\xfe\x00"), "its Home.xml cannot be read"),
-        (pack(BOMB), "its Home.xml cannot be read"),
+        (pack(bomb), "its Home.xml cannot be read"),
         (change(b"x='100.0'", b"x='abc'"), "h.sh3d, pieceOfFurniture[0]: x is 'abc', not a number."),
         (change(b"x='100.0'", b"x='NaN'"), "x is 'NaN', not a number."),
         (change(b"x='100.0'", b"x='1e9'"), "x is '1e9', not a number."),
         (change(b"thickness='7.5'", b""), "h.sh3d, wall[0]: thickness is '', not a number."),
-    ],
-)
-def test_what_cannot_be_read_is_refused(data, said):
-    assert said in refused(data)
-
-
-def test_too_many_elements_too_deep_in_code_or_too_much_is_refused(monkeypatch):
+    ):
+        assert said in refused(data), (data, said)
     assert "holds more than 100,000 elements" in refused(pack(b"<home>" + b"<property/>" * 100_001 + b"</home>"))
     assert "too many inside each other" in refused(pack(b"<home>" + b"<a>" * 200 + b"</a>" * 200 + b"</home>"))
     wall = b"<wall xStart='0' yStart='0' xEnd='9' yEnd='9' thickness='1'/>"
@@ -217,28 +205,22 @@ HUTCH = b"""<furnitureGroup name='Dresser with hutch' x='300' y='900' width='110
 </furnitureGroup>"""
 
 
-@pytest.mark.parametrize(
-    ("more", "names", "height"),
-    [
+def test_parts_of_a_group_that_stand_on_each_other_are_one_piece_and_what_is_left_out_is_told():
+    for more, names, height in (
         (b"", {"Dresser with hutch"}, 2.0),
         (b"<pieceOfFurniture id='d3' name='Chair' x='380' y='900' width='60' depth='50' height='90'/>",
          {"Dresser", "Chair"}, 2.0),  # stands beside: it stays apart
         (b"<pieceOfFurniture id='d3' name='Lamp' x='300' y='900' elevation='200' width='20' depth='20' height='40'/>",
          {"Dresser"}, 2.0),  # covers little of what it stands on
-    ],
-)  # fmt: skip
-def test_parts_of_a_group_that_stand_on_each_other_are_one_piece(more, names, height):
-    group = HUTCH.replace(b"{more}", more)
-    before = {one.name for one in read(FILE.read_bytes()).pieces}
-    model = read(change(b"</home>", group + b"</home>"))
-    new = {one.name: one for one in model.pieces if one.name not in before}
-    assert new.keys() == names
-    piece = next(one for name, one in new.items() if "Dresser" in name)
-    assert (piece.breadth, piece.width, piece.height) == pytest.approx((0.5, 1.0, height))
-    assert (piece.support_breadth, piece.support_width) == pytest.approx((0.5, 1.0))
-
-
-def test_what_stands_on_a_piece_and_is_left_out_is_warned_of():
+    ):  # fmt: skip
+        group = HUTCH.replace(b"{more}", more)
+        before = {one.name for one in read(FILE.read_bytes()).pieces}
+        model = read(change(b"</home>", group + b"</home>"))
+        new = {one.name: one for one in model.pieces if one.name not in before}
+        assert new.keys() == names, (more, names)
+        piece = next(one for name, one in new.items() if "Dresser" in name)
+        assert (piece.breadth, piece.width, piece.height) == pytest.approx((0.5, 1.0, height)), (more, names)
+        assert (piece.support_breadth, piece.support_width) == pytest.approx((0.5, 1.0)), (more, names)
     top = b"<pieceOfFurniture id='t' name='Top box' x='300' y='900' elevation='90' width='90' depth='50' height='80'/>"
     base = b"<pieceOfFurniture id='b' name='Base box' x='300' y='900' width='100' depth='50' height='90'/>"
     (warning,) = read(change(b"</home>", base + top + b"</home>")).warnings[1:]

@@ -86,16 +86,14 @@ def test_counts_lists_and_the_table_of_all_pieces_never_mix_bases(mixed):
     }  # fmt: skip
 
 
-CONDITIONS = ("Assumed: exactly this motion, and every piece exactly as given", "Every floor's motion times 1.2")
-
-
 @pytest.mark.slow
 def test_other_conditions_are_named_on_every_page_of_the_pdf(mixed, tmp_path):
+    conditions = ("Assumed: exactly this motion, and every piece exactly as given", "Every floor's motion times 1.2")
     exactly = _assess(tmp_path, ideal=True, scale=1.2)
     written = assess.write_reports(exactly, tmp_path / "out", ("pdf",))
     pages = read_pages(written["pdf"])
     assert len(pages) > 5
-    assert all(condition in text for text in pages for condition in CONDITIONS)
+    assert all(condition in text for text in pages for condition in conditions)
     for edition in ("client", "annex"):
         page = render(mixed, for_print=True, edition=edition)
         assert 'data-conditions=""' in page

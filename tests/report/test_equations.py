@@ -24,9 +24,8 @@ DRAWS_EQUATIONS = True
 LINES = [text for method in all_methods() for text in method.equations] + [one.equation for one in PROFILES.values()]
 
 
-@pytest.mark.parametrize(
-    ("plain", "tex"),
-    [
+def test_tex_indices_and_equations_of_a_line():
+    for plain, tex in (
         ("B/H", r"\dfrac{B}{H}"), ("b/(B/H)", r"\dfrac{b}{B/H}"), ("d/(B/H)²", r"\dfrac{d}{\left(B/H\right)^{2}}"),
         ("f·PFA/(B/H)", r"\dfrac{f\cdot \mathrm{PFA}}{B/H}"), ("a/2/3", r"\dfrac{a}{2 \cdot 3}"),
         ("a/b·c", r"\dfrac{a}{b}\cdot c"), ("(1/2 + x)/(a + b)", r"\dfrac{1/2 + x}{a + b}"),
@@ -39,16 +38,33 @@ LINES = [text for method in all_methods() for text in method.equations] + [one.e
         ("PFV50 = V_imp", r"\mathrm{PFV}_{50} = V_{\mathrm{imp}}"), ("B/H* = -2d", r"(B/H)^{\ast} = - 2 d"),
         ("a₁ (z/h)¹⁰", r"a_{1}\, \left(z/h\right)^{10}"), ("p = 2.5 rad/s", r"p = 2.5\;\mathrm{rad/s}"),
         ("g = 9.8 m/s²", r"g = 9.8\;\mathrm{m/s^2}"), ("ε_k = N(0; 1)", r"\varepsilon_{k} = N\left(0,\, 1\right)"),
-    ],
-)  # fmt: skip
-def test_tex(plain, tex):
-    assert write_tex(plain) == tex
-
-
-@pytest.mark.parametrize("plain", ["", "a +", "(a + b", "a + b)", "(a]", "a ^", "√", "|a", "as given", "a § b", "a/"])
-def test_what_is_no_equation(plain):
-    with pytest.raises(NotationError):
-        write_tex(plain)
+    ):  # fmt: skip
+        assert write_tex(plain) == tex, (plain, tex)
+    for plain in ("", "a +", "(a + b", "a + b)", "(a]", "a ^", "√", "|a", "as given", "a § b", "a/"):
+        with pytest.raises(NotationError):
+            write_tex(plain)
+    for text, html in (
+        ("F_f = PFA/(2π PFV)", "F<sub>f</sub> = PFA/(2π PFV)"),
+        ("15.6/√H (1 + B/H)^-1.5", "15.6/√H (1 + B/H)<sup>-1.5</sup>"),
+        ("15,6/√202·(1 + 0,1386)^(-1,5) = 0,9", "15,6/√202·(1 + 0,1386)<sup>-1,5</sup> = 0,9"),
+        ("θ″ = -p²·(a_g/g)", "θ″ = -p²·(a<sub>g</sub>/g)"),
+        ("λ_A < ζ_V & x", "λ<sub>A</sub> &lt; ζ<sub>V</sub> &amp; x"),
+        ("a_1<b>", "a<sub>1</sub>&lt;b&gt;"),
+    ):
+        assert HtmlWriter(for_print=True).words(lower_indices(text)) == html, (text, html)
+    for line, equations in (
+        ("Rocking starts where |a_g|/g > B/H", ["|a_g|/g > B/H"]),
+        ("R = k/N   (5), PFA in cm/s²", ["R = k/N"]),
+        ("Possibile dove PFA > g·(B/H) e PFV > 10·B/√H (cm, cm/s)", ["PFA > g·(B/H)", "PFV > 10·B/√H"]),
+        ("a = 0,5, b = N(0; 1); c = 2", ["a = 0,5", "b = N(0; 1)", "c = 2"]),
+        ("B/H = 28/202 = 0.13861", ["B/H = 28/202", "= 0.13861"]),
+        ("PFA is not above PFA*: it is used as it is.", []),
+        ("It overturned in 144 of 200 draws of a motion.", []),
+        ("The piece (see a) has 2 sides; k of them", []),
+    ):
+        parts = split_line(line)
+        assert [one.text for one in parts if one.tex] == equations, (line, equations)
+        assert "".join(one.text for one in parts) == line, (line, equations)
 
 
 @pytest.mark.parametrize("code", ["en", "it"])
@@ -112,37 +128,3 @@ def test_what_is_drawn_is_kept_and_drawn_anew_where_that_is_damaged(monkeypatch,
     assert draw_math.__wrapped__(r"\dfrac{a}{b}") == drawn, "nothing is read where others can write"
     assert [path.read_text() for path in (tmp_path / "assess" / "equations").iterdir()] == ["{}"]
     examine_folder.cache_clear()
-
-
-@pytest.mark.parametrize(
-    ("text", "html"),
-    [
-        ("F_f = PFA/(2π PFV)", "F<sub>f</sub> = PFA/(2π PFV)"),
-        ("15.6/√H (1 + B/H)^-1.5", "15.6/√H (1 + B/H)<sup>-1.5</sup>"),
-        ("15,6/√202·(1 + 0,1386)^(-1,5) = 0,9", "15,6/√202·(1 + 0,1386)<sup>-1,5</sup> = 0,9"),
-        ("θ″ = -p²·(a_g/g)", "θ″ = -p²·(a<sub>g</sub>/g)"),
-        ("λ_A < ζ_V & x", "λ<sub>A</sub> &lt; ζ<sub>V</sub> &amp; x"),
-        ("a_1<b>", "a<sub>1</sub>&lt;b&gt;"),
-    ],
-)
-def test_indices(text, html):
-    assert HtmlWriter(for_print=True).words(lower_indices(text)) == html
-
-
-@pytest.mark.parametrize(
-    ("line", "equations"),
-    [
-        ("Rocking starts where |a_g|/g > B/H", ["|a_g|/g > B/H"]),
-        ("R = k/N   (5), PFA in cm/s²", ["R = k/N"]),
-        ("Possibile dove PFA > g·(B/H) e PFV > 10·B/√H (cm, cm/s)", ["PFA > g·(B/H)", "PFV > 10·B/√H"]),
-        ("a = 0,5, b = N(0; 1); c = 2", ["a = 0,5", "b = N(0; 1)", "c = 2"]),
-        ("B/H = 28/202 = 0.13861", ["B/H = 28/202", "= 0.13861"]),
-        ("PFA is not above PFA*: it is used as it is.", []),
-        ("It overturned in 144 of 200 draws of a motion.", []),
-        ("The piece (see a) has 2 sides; k of them", []),
-    ],
-)
-def test_equations_of_a_line(line, equations):
-    parts = split_line(line)
-    assert [one.text for one in parts if one.tex] == equations
-    assert "".join(one.text for one in parts) == line

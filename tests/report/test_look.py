@@ -93,20 +93,14 @@ def test_what_cannot_be_read_is_told_before_the_work(tmp_path, name, text, told)
     assert not (tmp_path / "o").exists()
 
 
-@pytest.mark.parametrize(
-    ("name", "told"),
-    [
+def test_a_folder_without_templates_and_a_folder_or_language_that_is_not_there_is_told(tmp_path):
+    for name, told in (
         ("covers.html.j2", r"replaces no standard template. Did you mean cover.html"),
         ("sections/limits.html.j2", "is no longer a template. Choose and order the sections in page.html.j2"),
         (".hidden", "holds no template: expected some of city.html.j2, cover"),
-    ],
-)
-def test_a_folder_without_templates_is_told(tmp_path, name, told):
-    with pytest.raises(InputError, match=told):
-        own(tmp_path, name, "")
-
-
-def test_a_folder_or_a_language_that_is_not_there_is_told(tmp_path):
+    ):
+        with pytest.raises(InputError, match=told):
+            own(tmp_path / name.partition("/")[0], name, "")
     with pytest.raises(InputError, match="templates: there is no folder"):
         ReportOptions(templates=tmp_path / "none")
     with pytest.raises(InputError, match="language is 'xx', expected one of en, it"):

@@ -43,7 +43,7 @@ def _near(corners, expected):
         assert one == pytest.approx(other)
 
 
-def test_breadth_lies_along_the_angle():
+def test_breadth_lies_along_the_angle_and_a_fallen_piece_touches_its_footprint():
     _near(rectangle((2, 3), 0, (-0.15, 0.15), 0.8), [(1.85, 2.6), (2.15, 2.6), (2.15, 3.4), (1.85, 3.4)])
     _near(rectangle((2, 3), 90, (-0.15, 0.15), 0.8), [(2.4, 2.85), (2.4, 3.15), (1.6, 3.15), (1.6, 2.85)])
     cos, sin = 3**0.5 / 2, 0.5
@@ -52,18 +52,15 @@ def test_breadth_lies_along_the_angle():
         [(-cos + 2 * sin, -sin - 2 * cos), (cos + 2 * sin, sin - 2 * cos),
          (cos - 2 * sin, sin + 2 * cos), (-cos - 2 * sin, -sin + 2 * cos)],
     )  # fmt: skip
-
-
-@pytest.mark.parametrize("angle", [0, 30, 90, 217])
-def test_a_fallen_piece_touches_its_footprint_at_any_angle(angle):
-    near_start, near_end, far_end, far_start = rectangle((1, 2), angle, (-0.2, 0.2), 0.7)
-    ahead, behind = fallen((1, 2), angle, 0.4, 0.7, 1.9)
-    _near((ahead[0], ahead[3]), (near_end, far_end))
-    _near((behind[1], behind[2]), (near_start, far_start))
-    for one in (ahead, behind):
-        (x0, y0), (x1, y1), (x2, y2), _last = one
-        assert ((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5 == pytest.approx(1.9)
-        assert ((x2 - x1) ** 2 + (y2 - y1) ** 2) ** 0.5 == pytest.approx(0.7)
+    for angle in (0, 30, 90, 217):
+        near_start, near_end, far_end, far_start = rectangle((1, 2), angle, (-0.2, 0.2), 0.7)
+        ahead, behind = fallen((1, 2), angle, 0.4, 0.7, 1.9)
+        _near((ahead[0], ahead[3]), (near_end, far_end))
+        _near((behind[1], behind[2]), (near_start, far_start))
+        for one in (ahead, behind):
+            (x0, y0), (x1, y1), (x2, y2), _last = one
+            assert ((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5 == pytest.approx(1.9), angle
+            assert ((x2 - x1) ** 2 + (y2 - y1) ** 2) ** 0.5 == pytest.approx(0.7), angle
 
 
 def test_pieces_with_a_position_are_drawn_hatched_where_they_may_fall_and_links_lead_somewhere(assessment):

@@ -1,37 +1,25 @@
 """Numbers and sentences of the reports: none contradicts the class, the counts, or another report."""
 
-import pytest
-
 from assess.report import words
 from assess.risk import LIMITS, classify
 
 
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [
+def test_a_percentage_never_contradicts_its_class_and_has_its_interval_where_that_says_more():
+    for value, text in (
         (0.6998, "69.98 %"), (0.69996, "69.996 %"), (0.7, "70.0 %"), (0.7001, "70.0 %"), (0.2997, "29.97 %"),
         (0.02996, "2.996 %"), (0.03, "3.0 %"), (0.0304, "3.0 %"), (0.699, "69.9 %"), (0.0, "0.0 %"), (1.0, "100.0 %"),
         (0.9999, "100.0 %"), (0.7 - 1e-12, "69.999999 %"), (None, "–"),
-    ],
-)  # fmt: skip
-def test_a_percentage_never_contradicts_its_class(value, text):
-    assert words.percent(value) == text
-
-
-@pytest.mark.parametrize(
-    ("chance", "text"),
-    [
+    ):  # fmt: skip
+        assert words.percent(value) == text, (value, text)
+    for chance, text in (
         ((0.03, 0.01, 0.085), "3.0 % (1.0\xa0to\xa08.5\xa0%)"), ((0.03, None, None), "3.0 %"), ((0.03,), "3.0 %"),
         ((1.0, 0.99999, 1.0), "100.0 %"), ((None, None, None), "–"),
-    ],
-)  # fmt: skip
-def test_a_chance_has_its_interval_where_that_says_more(chance, text):
-    assert words.say_chance(*chance) == text
+    ):  # fmt: skip
+        assert words.say_chance(*chance) == text, (chance, text)
 
 
-@pytest.mark.parametrize(
-    ("names", "runs"),
-    [
+def test_names_in_a_row_are_joined_as_many_as_there_is_room_for_and_the_mark_of_a_draft_is_never_cut():
+    for names, runs in (
         (["25-07", "25-08", "25-09"], ["25-07 to 25-09"]),
         (["A9", "A10", "A11", "B12", "B14"], ["A9 to A11", "B12", "B14"]),
         (["S08", "S9", "S10", "S11"], ["S08", "S9 to S11"]),
@@ -40,13 +28,8 @@ def test_a_chance_has_its_interval_where_that_says_more(chance, text):
         (["Bookcase 1", "Bookcase 2", "Bookcase 3"], ["Bookcas…"] * 3),
         (["Safe", "Safe 1"], ["Safe", "Safe 1"]),
         ([], []),
-    ],
-)
-def test_names_in_a_row_are_joined(names, runs):
-    assert words.join_runs(names, 8) == runs
-
-
-def test_as_many_pieces_are_named_as_there_is_room_for_and_percentages_hold_beside_every_limit():
+    ):
+        assert words.join_runs(names, 8) == runs, (names, runs)
     names = ["25-01", "25-02", "25-03", "25-07", "25-08", "25-09", "25-31"]
     assert words.fit_pieces(names, 40) == "25-01 to 25-03, 25-07 to 25-09, 25-31"
     assert words.fit_pieces(names, 28) == "25-01 to 25-03 and 4 more"
@@ -58,17 +41,11 @@ def test_as_many_pieces_are_named_as_there_is_room_for_and_percentages_hold_besi
             value = limit - 10.0**-power
             if value >= 0:
                 assert classify(float(words.percent(value)[:-2]) / 100) == classify(value), value
-
-
-@pytest.mark.parametrize(
-    ("text", "longest", "shown"),
-    [
+    for text, longest, shown in (
         ("To Stair Level 2, head (draft)", 40, "To Stair Level 2, head (draft)"),
         ("To Stair Level 2, head (draft)", 26, "To Stair Level 2,… (draft)"),
         ("To Stair Level 2, head (bozza)", 26, "To Stair Level 2,… (bozza)"),
         ("To Stair Level 2, head (east)", 26, "To Stair Level 2, head (e…"),
         ("a (draft)", 4, "a… (draft)"),
-    ],
-)
-def test_the_mark_of_a_draft_is_never_cut(text, longest, shown):
-    assert words.cut(text, longest) == shown
+    ):
+        assert words.cut(text, longest) == shown, (text, longest)

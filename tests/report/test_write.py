@@ -195,12 +195,10 @@ def test_a_folder_without_results_is_unfinished(tmp_path):
     assert _names(tmp_path / "out") == ["items.csv", "results.json"]
 
 
-@pytest.mark.parametrize(
-    "text", ["", "{}", '{"a": 1}', "[]", '{"schema": "1.0"}', '{"schema": "1.0", "assess": {}}', "{" * 5000]
-)
-def test_results_of_another_program_list_nothing(tmp_path, text):
-    (tmp_path / "results.json").write_text(text)
-    assert read_list(tmp_path / "results.json") == {}
+def test_results_of_another_program_list_nothing(tmp_path):
+    for text in ("", "{}", '{"a": 1}', "[]", '{"schema": "1.0"}', '{"schema": "1.0", "assess": {}}', "{" * 5000):
+        (tmp_path / "results.json").write_text(text)
+        assert read_list(tmp_path / "results.json") == {}, text
 
 
 @pytest.mark.slow

@@ -40,10 +40,6 @@ def _list_left(server):
     return list_named(server.folder.parent / "tmp", "job-")
 
 
-def _find_worker(server):
-    return find_worker(server, b"job_process")
-
-
 def _find_end(row, key, end):
     """Return an end of the range of a row: of what is not known on assumed motion, else of the sampling interval."""
     found, adopted = row["verification"], row["adopted"]
@@ -166,7 +162,7 @@ def test_cancelling_ends_the_process_and_leaves_nothing(served, tmp_path):
     assert (job["state"], job["files"]) == ("cancelled", [])
     wait_until(lambda: _list_left(server), lambda left: left == [])
     if Path("/proc/self/task").is_dir():
-        assert _find_worker(server) == 0
+        assert find_worker(server, b"job_process") == 0
     server.client.post("/api/job", LONG)  # another one can begin, which ends with the server
     status, _, err = server.stop()
     assert (status, err) == (0, "Stopped. All changes are saved in w.xlsx.\n")
@@ -178,7 +174,7 @@ def test_cancelling_ends_the_process_and_leaves_nothing(served, tmp_path):
 def test_a_process_that_is_killed_is_a_job_that_failed(served, tmp_path):
     server = served(write(tmp_path / "w.xlsx"))
     server.client.post("/api/job", LONG)
-    os.kill(wait_until(lambda: _find_worker(server), bool), signal.SIGKILL)
+    os.kill(wait_until(lambda: find_worker(server, b"job_process"), bool), signal.SIGKILL)
     job = wait_for_job(server.client)
     assert job["state"] == "failed"
     assert "ended unexpectedly" in job["message"]
@@ -191,7 +187,7 @@ def test_a_job_ends_with_a_server_that_is_killed_and_the_next_one_sweeps_up(serv
     path = write(tmp_path / "w.xlsx")
     server = served(path)
     server.client.post("/api/job", LONG)
-    worker = wait_until(lambda: _find_worker(server), bool)
+    worker = wait_until(lambda: find_worker(server, b"job_process"), bool)
     wait_until(lambda: server.client.get("/api/job").json()["job"]["stage"], bool)
     server.process.kill()
     server.process.wait()

@@ -66,22 +66,20 @@ def test_classes_and_chances_are_those_of_the_run(example):
     assert pfa["42"] == pytest.approx((0.2224, 0.1359), abs=1e-4)
 
 
-SLIPS = [
-    ("item", "A1"),  # duplicate
-    ("item", None), ("floor", "9"), ("floor", None), ("axis", "Z"), ("height", None), ("height", "tall"),
-    ("breadth", 4), ("anchored", "yes"),
-]  # fmt: skip
-
-
 @pytest.mark.parametrize("language", ["en", "it"])
 def test_a_row_without_a_class_has_the_word_of_the_class_column(tmp_path, language):
     """What a spreadsheet program shows for the same cells; it knows nothing of a name that is there twice."""
+    slips = [
+        ("item", "A1"),  # duplicate
+        ("item", None), ("floor", "9"), ("floor", None), ("axis", "Z"), ("height", None), ("height", "tall"),
+        ("breadth", 4), ("anchored", "yes"),
+    ]  # fmt: skip
     row = {"floor": "1", "breadth": 40, "height": 180}
-    items = [{"item": f"A{at}", **row} for at in range(1, len(SLIPS) + 2)] + [{**row, "item": "last", "floor": "3"}]
+    items = [{"item": f"A{at}", **row} for at in range(1, len(slips) + 2)] + [{**row, "item": "last", "floor": "3"}]
     floors = [*FLOORS, {"floor": "3"}]
     path = _write(tmp_path / "w.xlsx", {"Items": items, "Floors": floors}, language)
     book = hold(path)
-    edit(book, *(("Items", at, field, value) for at, (field, value) in enumerate(SLIPS, 3)))
+    edit(book, *(("Items", at, field, value) for at, (field, value) in enumerate(slips, 3)))
     answer = _answer(book)
     words = {at: (risk, word) for at, (risk, word, *_) in _by_row(answer).items()}
     path.write_bytes(book.write())
@@ -90,7 +88,7 @@ def test_a_row_without_a_class_has_the_word_of_the_class_column(tmp_path, langua
     shown = {at: calculated.get_value(title, at, 2) or "" for at in words}
     assert words.pop(3)[1] == {"en": "check", "it": "controllare"}[language]
     for at, (risk, word) in words.items():
-        assert (word if not risk else shown[at]) == shown[at], (at, SLIPS[at - 3] if 2 < at < 12 else "")
+        assert (word if not risk else shown[at]) == shown[at], (at, slips[at - 3] if 2 < at < 12 else "")
     assert (words[2][0], shown[2]) == ("high", {"en": "▲ high", "it": "▲ alto"}[language])
     assert words[max(words)][1] == {"en": "shaking?", "it": "scuotimento?"}[language]
 

@@ -186,20 +186,18 @@ def test_what_is_typed_meets_a_change_from_elsewhere(small):
     expect(small.cell("Description", 3)).to_have_text("Table")
 
 
-MARKUP = '<img src=x onerror="document.title=1">'
-
-
 def test_markup_in_a_cell_is_text(page, served_here, tmp_path):
-    items = [ITEMS[0] | {"room": MARKUP, "description": MARKUP}, ITEMS[1] | {"item": MARKUP, "axis": MARKUP}]
+    markup = '<img src=x onerror="document.title=1">'
+    items = [ITEMS[0] | {"room": markup, "description": markup}, ITEMS[1] | {"item": markup, "axis": markup}]
     sheet = opened(page, served_here(write_office(tmp_path / "office.xlsx", items))).open("Items")
-    expect(sheet.cell("Room", 2)).to_have_text(MARKUP)
+    expect(sheet.cell("Room", 2)).to_have_text(markup)
     expect(sheet.page.locator(".problems")).to_contain_text("<img")
     sheet.head("Room").get_by_role("button").click()
     sheet.page.keyboard.press("Escape")
-    sheet.copy_text(MARKUP, f"<table><tr><td style='color:red'>{html.escape(MARKUP)}{MARKUP}</td></tr></table>").select(
+    sheet.copy_text(markup, f"<table><tr><td style='color:red'>{html.escape(markup)}{markup}</td></tr></table>").select(
         "Notes", 3
     ).type("<Control+v>")
     sheet.select("Type", 3).type("<img", "<Enter>").settle()
-    assert sheet.values("Items", "notes")[3] == MARKUP
+    assert sheet.values("Items", "notes")[3] == markup
     assert sheet.page.locator("img").count() == 0
     assert sheet.page.title() != "1"

@@ -278,19 +278,17 @@ def test_a_floor_that_cannot_be_drawn_counts_only_pieces_that_name_a_route(tmp_p
         }
 
 
-UNREAD: list[tuple[str, str, Any]] = [
-    ("Office", "X", "far"), ("Office", "Floor", None), ("Office", "Kind", "roof"),
-    ("Upper", "Kind", "roof"), ("aisle", "Route", None), ("aisle", "Segment", None), ("aisle", "Clear", "wide"),
-    ("aisle", "Required", -1), ("aisle", "Floor", "=A1"), ("aisle", "From", "#REF!"), ("hall", "Segment", None),
-    ("B1", "Floor", None), ("B1", "X", "left"), ("B1", "Route", "#REF!"), ("B1", "Segment", "=A1"),
-    ("B1", "Edge", "near"), ("B2", "X", "left"), ("B2", "Route", "#REF!"),
-]  # fmt: skip
-
-
 def test_a_cell_that_cannot_be_read_is_told_once_and_pieces_beside_routes_need_a_width(
     tmp_path: Path,
 ) -> None:
-    for row, header, value in UNREAD:
+    unread: list[tuple[str, str, Any]] = [
+        ("Office", "X", "far"), ("Office", "Floor", None), ("Office", "Kind", "roof"),
+        ("Upper", "Kind", "roof"), ("aisle", "Route", None), ("aisle", "Segment", None), ("aisle", "Clear", "wide"),
+        ("aisle", "Required", -1), ("aisle", "Floor", "=A1"), ("aisle", "From", "#REF!"), ("hall", "Segment", None),
+        ("B1", "Floor", None), ("B1", "X", "left"), ("B1", "Route", "#REF!"), ("B1", "Segment", "=A1"),
+        ("B1", "Edge", "near"), ("B2", "X", "left"), ("B2", "Route", "#REF!"),
+    ]  # fmt: skip
+    for row, header, value in unread:
         assert len(problems_of(book(tmp_path, **{row: {header: value}}))) == 1, (row, header)
     nameless = problems_of(book(tmp_path, Office={"Place": None}))  # a segment names a place that is not there
     assert [problem.place for problem in nameless] == ["Places!A2", "Routes!D2"]

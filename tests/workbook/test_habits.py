@@ -176,14 +176,12 @@ def test_hidden_columns_and_sheets_are_noted_and_an_earlier_label_is_read(tmp_pa
     }
 
 
-TYPES: Sheet = [["Type", "Height [cm]"], ["Locker", 180]]
-
-
 def test_an_unknown_type_is_a_warning_beside_typed_sizes_and_else_an_error(
     tmp_path: Path,
 ) -> None:
+    types: Sheet = [["Type", "Height [cm]"], ["Locker", 180]]
     header = [*ITEMS[0], "Type"]
-    inventory = read(tmp_path, [header, ["A1", "1", 40, 180, "Lokcer"]], Catalogue=TYPES)
+    inventory = read(tmp_path, [header, ["A1", "1", 40, 180, "Lokcer"]], Catalogue=types)
     assert (inventory.items[0].type, inventory.items[0].height, inventory.errors) == ("Lokcer", 1.8, ())
     assert remarks(inventory, "warning") == {
         "Items!E2: Type 'Lokcer' is not in the Catalogue sheet; the sizes typed in its row are used. "
@@ -201,6 +199,6 @@ def test_an_unknown_type_is_a_warning_beside_typed_sizes_and_else_an_error(
         ["A2", "1", 40, 180, "Bed", 1.0, 1],
         ["A3", "1", 40, 180, "Bed", None, 1, 0.5],
     ]
-    found = errors_of(write(tmp_path, [header, *rows], Catalogue=TYPES))
+    found = errors_of(write(tmp_path, [header, *rows], Catalogue=types))
     for row in (2, 3, 4):
         assert any(f"E{row}: Type 'Bed' is not in the Catalogue sheet. Choose" in one for one in found)

@@ -162,12 +162,10 @@ def test_sheets_that_are_large_or_lie_about_it(tmp_path: Path) -> None:
     assert found == expected
 
 
-ORDER = [(2, 5, 3), (2, 2), (0,), (9_999_999,)]
-
-
 def test_rows_out_of_order_or_without_a_number_and_another_encoding_are_damage(tmp_path: Path) -> None:
     """Openpyxl's quick reader leaves such rows out without a word."""
-    for numbers in ORDER:
+    order = [(2, 5, 3), (2, 2), (0,), (9_999_999,)]
+    for numbers in order:
         rows = "".join(f'<row r="{n}"><c r="A{n}" t="inlineStr"><is><t>A{n}</t></is></c></row>' for n in numbers)
         path = add_part(write(tmp_path), SHEET, sheet_of(iter([HEADER.encode(), rows.encode()])))
         assert errors_of(path) == {

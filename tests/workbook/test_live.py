@@ -506,22 +506,20 @@ def test_a_text_in_place_of_a_number_shows_no_class(tmp_path: Path) -> None:
     assert [shown[row][4:] for row in range(2, 5 * len(TEXTS) + 2)] == [["check"] * 4] * 5 * len(TEXTS)
 
 
-REFUSED: list[tuple[dict[str, Any], dict[str, Any]]] = [
-    ({"breadth": 45000}, {}), ({"breadth": 0.4}, {}), ({"breadth": -40}, {}), ({"breadth": 0}, {}),
-    ({"height": 1.8}, {}), ({"height": 700}, {}), ({}, {"pfa_x": -0.5}), ({}, {"pfa_x": "much"}),
-    ({}, {"pfa_x": 25}), ({"breadth": 200, "width": 100}, {}), ({"type": "narrow"}, {}),
-    ({"type": "narrow", "width": 39.9}, {}),
-]  # fmt: skip
-
-
 def test_a_number_that_the_program_refuses_shows_no_class(tmp_path: Path) -> None:
     """A date read out of 4/5 is a breadth of 450 m; metres below a header in cm are a needle; 25 of PFA is a percentage."""
+    refused: list[tuple[dict[str, Any], dict[str, Any]]] = [
+        ({"breadth": 45000}, {}), ({"breadth": 0.4}, {}), ({"breadth": -40}, {}), ({"breadth": 0}, {}),
+        ({"height": 1.8}, {}), ({"height": 700}, {}), ({}, {"pfa_x": -0.5}), ({}, {"pfa_x": "much"}),
+        ({}, {"pfa_x": 25}), ({"breadth": 200, "width": 100}, {}), ({"type": "narrow"}, {}),
+        ({"type": "narrow", "width": 39.9}, {}),
+    ]  # fmt: skip
     narrow = [{"type": "narrow", "breadth": 20, "width": 30, "height": 180}]
-    cases = [({}, {}), *REFUSED]
+    cases = [({}, {}), *refused]
     floors = [{"floor": str(at), "pfa_x": 0.5} | floor for at, (_, floor) in enumerate(cases)]
     items = [{"floor": str(at)} | item for at, (item, _) in enumerate(cases)]
     good, *others = (row[5] for row in shown_rows(tmp_path, items, floors, narrow))
-    assert (good, others) == ("▲ high", ["check"] * len(REFUSED))
+    assert (good, others) == ("▲ high", ["check"] * len(refused))
 
 
 def breadths_and_widths(path: Path) -> Path:

@@ -110,15 +110,13 @@ def test_every_intensity_equals_the_program(tmp_path: Path, choice: str) -> None
     assert by_formualizer(path)[2][1] == pytest.approx(SHAKINGS[choice].pga / GRAVITY)
 
 
-@pytest.mark.parametrize(("grade", "building"), [({"elevation": 0}, {}), ({"elevation": -3}, {"storeys": 4})])
-def test_a_motion_at_grade_serves_unknown_heights(
-    tmp_path: Path, grade: dict[str, Any], building: dict[str, Any]
-) -> None:
-    write_record(tmp_path)
-    for motion in ({"pfa_x": 0.3}, {"record_x": "roof.csv"}):
-        floors = [{"floor": "G", **grade, **motion}, UNPLACED]
-        assert show(tmp_path, floors, **building)["loft"][1:] == ["run assess"] * 7
-        check(fill(tmp_path / "book.xlsx", furnish(floors), floors, building))
+def test_a_motion_at_grade_serves_unknown_heights(tmp_path: Path) -> None:
+    for grade, building in (({"elevation": 0}, {}), ({"elevation": -3}, {"storeys": 4})):
+        write_record(tmp_path)
+        for motion in ({"pfa_x": 0.3}, {"record_x": "roof.csv"}):
+            floors = [{"floor": "G", **grade, **motion}, UNPLACED]
+            assert show(tmp_path, floors, **building)["loft"][1:] == ["run assess"] * 7, (grade, building)
+            check(fill(tmp_path / "book.xlsx", furnish(floors), floors, building))
 
 
 ITALIAN = [{"shaking": "MMI VIII, severe"}, {"ground_pga": 0.2, "structure": "muratura"}]
@@ -257,12 +255,6 @@ def test_records_and_shakemaps_beside_typed_floors_give_them_their_scatter_or_th
 PLACED = {"shakemap": "grid.xml", "latitude": 37.7893, "longitude": -122.4008}
 
 
-@pytest.mark.parametrize("more", [{}, {"shaking": "MMI IV, light"}, {"ground_pgv": 20}])
-def test_with_a_shakemap_every_floor_waits_for_the_program(tmp_path: Path, more: Any) -> None:
-    shown = show(tmp_path, FLOORS, **PLACED | more)
-    assert [one[1:] for one in shown.values()] == [["run assess"] * 7] * len(FLOORS)
-
-
 # ---------------------------------------------------------------- what is wrong, and what nothing serves
 
 WRONG: list[tuple[dict[str, Any], str]] = [
@@ -309,11 +301,17 @@ def test_a_wrong_uncertainty_shows_no_word_of_rocking(tmp_path: Path, ground: di
     assert all(isinstance(one[1], float) for one in shown.values())
 
 
-@pytest.mark.parametrize("z", ["8 metres high", 5000])
-def test_a_wrong_elevation_shows_no_class(tmp_path: Path, z: Any) -> None:
-    for at, own in enumerate(({}, {"pfa_x": 0.3})):
-        shown = show(tmp_path / str(at), [{"floor": "1", "elevation": z, **own}], ground_pga=0.2, period=0.5)
-        assert shown["1"][1:] == ["check"] * 7
+def test_a_wrong_elevation_own_motions_alone_and_a_shakemap_show_no_class(tmp_path: Path) -> None:
+    for z in ("8 metres high", 5000):
+        for at, own in enumerate(({}, {"pfa_x": 0.3})):
+            shown = show(tmp_path / str(at), [{"floor": "1", "elevation": z, **own}], ground_pga=0.2, period=0.5)
+            assert shown["1"][1:] == ["check"] * 7, z
+    for kind in ("given", "recorded"):
+        shown = show(tmp_path, FLOORS[:3], shaking="MMI VII, very strong", scenario_kind=kind)
+        assert [one[1:] for one in shown.values()] == [["shaking?"] * 7] * 3, kind
+    for more in ({}, {"shaking": "MMI IV, light"}, {"ground_pgv": 20}):
+        shown = show(tmp_path, FLOORS, **PLACED | more)
+        assert [one[1:] for one in shown.values()] == [["run assess"] * 7] * len(FLOORS), more
 
 
 UNREADABLE = [
@@ -372,22 +370,27 @@ def show_velocity(folder: Path, floors: Rows, **building: Any) -> dict[str, Any]
     return {one["floor"]: evaluated.get_value("Lists", row, at) for row, one in enumerate(floors, 2)}
 
 
-@pytest.mark.parametrize(("structure", "place"), [("frame", 0.6), ("walls", 1.0), ("dual", 0.15)])
-def test_a_floor_shows_the_entry_of_the_table(tmp_path: Path, structure: str, place: float) -> None:
+def test_a_floor_shows_the_entry_of_the_table_and_at_or_below_grade_the_motion_of_the_ground(tmp_path: Path) -> None:
     """T1 of 1.0 s, 105 cm/s per g and these z/h are entries, between which nothing is interpolated."""
-    with TABLE.open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    (row,) = [
-        one for one in rows
-        if one["structure"] == structure and one["T1 [s]"] == "1.0"
-        and float(one["PGV/PGA [s]"]) * 980.665 == pytest.approx(105, abs=0.1)
-    ]  # fmt: skip
-    floors = [{"floor": "a", "elevation": 20 * place}, {"floor": "b", "elevation": 20}]
-    building = {"ground_pga": 0.4, "ground_pgv": 42.0, "period": 1.0, "height": 20, "structure": structure}
-    shown = show(tmp_path, floors, **building)
-    assert shown["a"][1] == pytest.approx(0.4 * float(row[f"PFA/PGA at {place}"]))
-    velocity = show_velocity(tmp_path, floors, **building)
-    assert velocity["a"] == pytest.approx(42 * float(row[f"PFV/PGV at {place}"]))
+    for structure, place in (("frame", 0.6), ("walls", 1.0), ("dual", 0.15)):
+        with TABLE.open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        (row,) = [
+            one for one in rows
+            if one["structure"] == structure and one["T1 [s]"] == "1.0"
+            and float(one["PGV/PGA [s]"]) * 980.665 == pytest.approx(105, abs=0.1)
+        ]  # fmt: skip
+        floors = [{"floor": "a", "elevation": 20 * place}, {"floor": "b", "elevation": 20}]
+        building = {"ground_pga": 0.4, "ground_pgv": 42.0, "period": 1.0, "height": 20, "structure": structure}
+        shown = show(tmp_path, floors, **building)
+        assert shown["a"][1] == pytest.approx(0.4 * float(row[f"PFA/PGA at {place}"])), (structure, place)
+        velocity = show_velocity(tmp_path, floors, **building)
+        assert velocity["a"] == pytest.approx(42 * float(row[f"PFV/PGV at {place}"])), (structure, place)
+    for z in (0, -3):
+        floors = [{"floor": "a", "elevation": z}, {"floor": "b", "elevation": 12}]
+        building = {"ground_pga": 0.2, "ground_pgv": 31.0, "period": 0.5}
+        assert show(tmp_path, floors, **building)["a"][1] == pytest.approx(0.2), z
+        assert show_velocity(tmp_path, floors, **building)["a"] == pytest.approx(31), z
 
 
 def test_without_t1_it_comes_by_height_and_above_the_ground_the_peak_is_drawn_too(tmp_path: Path) -> None:
@@ -407,14 +410,6 @@ def test_without_t1_it_comes_by_height_and_above_the_ground_the_peak_is_drawn_to
     assert [by_formualizer(poison(path))[row][7] for row in (2, 3)] == ["yes", "no"]
 
 
-@pytest.mark.parametrize("z", [0, -3])
-def test_a_floor_at_or_below_grade_has_the_motion_of_the_ground(tmp_path: Path, z: float) -> None:
-    floors: Rows = [{"floor": "a", "elevation": z}, {"floor": "b", "elevation": 12}]
-    building = {"ground_pga": 0.2, "ground_pgv": 31.0, "period": 0.5}
-    assert show(tmp_path, floors, **building)["a"][1] == pytest.approx(0.2)
-    assert show_velocity(tmp_path, floors, **building)["a"] == pytest.approx(31)
-
-
 def test_a_typed_pfa_is_shown_as_typed_and_its_pfv_has_the_ratio_of_a_typed_ground(tmp_path: Path) -> None:
     """At grade PFV/PFA is that of the ground; a typed motion there comes before Ground PGA and Ground PGV."""
     floors: Rows = [{"floor": "g", "elevation": 0, "pfa_x": 0.2, "pfv_x": 30}, {"floor": "b", "elevation": -3,
@@ -432,9 +427,3 @@ def test_where_the_ground_is_typed_the_map_changes_nothing(tmp_path: Path, groun
     with_map, without = (show(tmp_path / str(at), FLOORS, **one) for at, one in enumerate((PLACED | ground, ground)))
     assert with_map == without
     assert all(isinstance(one[1], float) for one in without.values())
-
-
-@pytest.mark.parametrize("kind", ["given", "recorded"])
-def test_where_only_own_motions_count_the_ground_serves_no_floor(tmp_path: Path, kind: str) -> None:
-    shown = show(tmp_path, FLOORS[:3], shaking="MMI VII, very strong", scenario_kind=kind)
-    assert [one[1:] for one in shown.values()] == [["shaking?"] * 7] * 3

@@ -5,7 +5,6 @@ most of its time to start: it recalculates all workbooks at once.
 """
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
@@ -93,19 +92,15 @@ OTHERS: Books = {
 def test_libreoffice_shows_what_the_other_engine_does(tmp_path: Path, books: Books) -> None:
     paths = {}
     for at, (name, write) in enumerate(books.items()):
-        with _speaking_as(name):
+        with speaking(load_catalogue("it" if "Italian" in name else "en")):
             paths[name] = poison(write(tmp_path / f"{at}.xlsx"))
     found = {}
     for (name, path), again in zip(
         paths.items(), libreoffice_all(list(paths.values()), tmp_path / "again"), strict=True
     ):
-        with _speaking_as(name):
+        with speaking(load_catalogue("it" if "Italian" in name else "en")):
             found[name] = list(_differences(path, again))
     assert {name: rows[0] for name, rows in found.items() if rows} == {}
-
-
-def _speaking_as(name: str) -> AbstractContextManager[None]:
-    return speaking(load_catalogue("it" if "Italian" in name else "en"))
 
 
 def _differences(path: Path, again: Path) -> Iterator[str]:

@@ -59,11 +59,6 @@ def refusals(data: bytes, changes: Mapping[str, Mapping[str, Any]], **named: Any
     return {str(one) for one in caught.value.problems}
 
 
-def with_results(data: bytes, results: Mapping[str, Any]) -> bytes:
-    """A workbook with other stored results of the formulas of Items."""
-    return open_workbook(data, "book.xlsx").store({"Items": places(results)}).to_bytes()
-
-
 def minimal(rows: str, *, head: str = "", tail: str = "", root: str = f'<worksheet xmlns="{MAIN}">') -> bytes:
     """A workbook whose sheet Items holds this XML."""
     packed = io.BytesIO()
@@ -199,12 +194,10 @@ def test_what_only_looks_like_a_cell() -> None:
     assert values_of(after)["A1"] == '<c r="B1"><v>5</v></c></row></sheetData>'
 
 
-AWKWARD = ["", " padded ", "a\nb\tc", "a\rb", "<&>\"'", "_x0041_", "_x005F_", "é€𝄞", "=1+1", "0123", "]]>"]
-
-
 def test_texts_and_numbers() -> None:
+    awkward = ["", " padded ", "a\nb\tc", "a\rb", "<&>\"'", "_x0041_", "_x005F_", "é€𝄞", "=1+1", "0123", "]]>"]
     before = minimal("<sheetData/>")
-    for text in AWKWARD:
+    for text in awkward:
         after = edited(before, {"Items": {"A1": text}})
         assert own_values(after).get("A1", "") == text
         coded = re.sub("_(?=x[0-9A-F]{4}_)", "_x005F_", text)  # which openpyxl leaves as it is
@@ -285,7 +278,7 @@ def test_stored_results_of_formulas() -> None:
     items = open_workbook(before, "book.xlsx").sheet("Items")
     assert items.marks.formulas == {*places(dict.fromkeys(["A1", "B1", "C1", "D1", "B2", "D2"]))}
     assert all(items.value(place) not in (None, UNSAVED) for place in items.marks.formulas)
-    after = with_results(before, results)
+    after = open_workbook(before, "book.xlsx").store({"Items": places(results)}).to_bytes()
     assert (
         parts_of(after)[SHEET]
         .decode()
@@ -297,9 +290,9 @@ def test_stored_results_of_formulas() -> None:
         )
     )
     assert open_workbook(after, "book.xlsx").sheet("Items").value((1, 3)) is UNSAVED
-    assert with_results(after, results) == after
+    assert open_workbook(after, "book.xlsx").store({"Items": places(results)}).to_bytes() == after
     with pytest.raises(WorkbookError) as caught:
-        with_results(before, {"A2": 1, "Z9": 1})
+        open_workbook(before, "book.xlsx").store({"Items": places({"A2": 1, "Z9": 1})}).to_bytes()
     assert {str(one) for one in caught.value.problems} == {
         "Items!A2: it holds no formula. Change this cell in Excel.",
         "Items!Z9: it holds no formula. Change this cell in Excel.",

@@ -77,28 +77,26 @@ def test_prepared_rows_are_not_parsed_and_nothing_is_lost(monkeypatch: pytest.Mo
     assert look(data) == parse_alone(monkeypatch, data)
 
 
-HIDDEN = {
-    "number": ('<c r="H5"><v>12.5</v></c>', 7, 12.5),
-    "text": ('<c r="H5" t="str"><f>"a"</f><v>Hall</v></c>', 7, "Hall"),
-    "inline text": ('<c r="H5" t="inlineStr"><is><t>Hall</t></is></c>', 7, "Hall"),
-    "CDATA": ('<c r="H5" t="inlineStr"><is><t><![CDATA[<b>]]></t></is></c>', 7, "<b>"),
-    "entity": ('<c r="H5" t="str"><v>A&amp;B&#65;</v></c>', 7, "A&BA"),
-    "truth": ('<c r="H5" t="b"><v>1</v></c>', 7, True),
-    "single quotes": ("<c r='H5'><v>3</v></c>", 7, 3),
-    "other order": ('<c s="1" t="n" r="H5"><v>3</v></c>', 7, 3),
-    "no address": ("<c/><c><v>4</v></c>", 28, 4),
-    "prefix": (f'<x:c xmlns:x="{MAIN}" r="H5"><x:v>3</x:v></x:c>', 7, 3),
-    "shared formula": ('<c r="H5"><f t="shared" ref="H5:H9" si="0">A1</f><v>3</v></c>', 7, 3),
-    "unsaved formula": ('<c r="H5"><f>A1</f></c>', 7, UNSAVED),
-    "unsaved shared formula": ('<c r="H5"><f t="shared" si="0"/><v></v></c>', 7, UNSAVED),
-    "spaces": ('<c r="H5" >\n<f>A1</f>\n<v>3</v>\r\n</c>', 7, 3),
-}
-
-
 @pytest.mark.parametrize("is_first", [True, False])
 def test_a_value_hidden_in_a_prepared_row_is_read(compare, is_first: bool) -> None:
+    hidden = {
+        "number": ('<c r="H5"><v>12.5</v></c>', 7, 12.5),
+        "text": ('<c r="H5" t="str"><f>"a"</f><v>Hall</v></c>', 7, "Hall"),
+        "inline text": ('<c r="H5" t="inlineStr"><is><t>Hall</t></is></c>', 7, "Hall"),
+        "CDATA": ('<c r="H5" t="inlineStr"><is><t><![CDATA[<b>]]></t></is></c>', 7, "<b>"),
+        "entity": ('<c r="H5" t="str"><v>A&amp;B&#65;</v></c>', 7, "A&BA"),
+        "truth": ('<c r="H5" t="b"><v>1</v></c>', 7, True),
+        "single quotes": ("<c r='H5'><v>3</v></c>", 7, 3),
+        "other order": ('<c s="1" t="n" r="H5"><v>3</v></c>', 7, 3),
+        "no address": ("<c/><c><v>4</v></c>", 28, 4),
+        "prefix": (f'<x:c xmlns:x="{MAIN}" r="H5"><x:v>3</x:v></x:c>', 7, 3),
+        "shared formula": ('<c r="H5"><f t="shared" ref="H5:H9" si="0">A1</f><v>3</v></c>', 7, 3),
+        "unsaved formula": ('<c r="H5"><f>A1</f></c>', 7, UNSAVED),
+        "unsaved shared formula": ('<c r="H5"><f t="shared" si="0"/><v></v></c>', 7, UNSAVED),
+        "spaces": ('<c r="H5" >\n<f>A1</f>\n<v>3</v>\r\n</c>', 7, 3),
+    }
     own = PREPARED.format(n=5)
-    for name, (cell, at, value) in HIDDEN.items():
+    for name, (cell, at, value) in hidden.items():
         row = f'<row r="5">{cell + own if is_first and name != "no address" else own + cell}</row>'
         _, rows, last_row, *_ = compare(body(prepared(2, 3, 4), row, prepared(6, 7)))
         assert dict(rows)[5][at] == value, name

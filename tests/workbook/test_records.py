@@ -58,17 +58,15 @@ BAD_RECORDS = [
 ]
 
 
-OUTSIDE = [
-    "../roof.csv", r"..\roof.csv", "sub/../../roof.csv", "/etc/passwd", r"\roof.csv", r"C:\roof.csv", "C:roof.csv",
-    r"\\server\share\roof.csv", "//server/share/roof.csv", "file:///etc/passwd", "http://example.org/roof.csv",
-    "roof.csv:stream", "CON", "nul.csv", "sub/COM1.csv", "roof\u200d.csv", "n" * 600,
-]  # fmt: skip
-
-
 def test_records_that_cannot_be_used_and_links_that_lead_outside_the_folder(tmp_path: Path) -> None:
-    floors = [["Floor", "Record X"], *([f"F{at}", record] for at, record in enumerate(OUTSIDE))]
+    outside = [
+        "../roof.csv", r"..\roof.csv", "sub/../../roof.csv", "/etc/passwd", r"\roof.csv", r"C:\roof.csv", "C:roof.csv",
+        r"\\server\share\roof.csv", "//server/share/roof.csv", "file:///etc/passwd", "http://example.org/roof.csv",
+        "roof.csv:stream", "CON", "nul.csv", "sub/COM1.csv", "roof\u200d.csv", "n" * 600,
+    ]  # fmt: skip
+    floors = [["Floor", "Record X"], *([f"F{at}", record] for at, record in enumerate(outside))]
     found = errors_of(write(tmp_path, [ITEMS[0], ["A1", "F0", 40, 180]], floors))
-    assert len(found) == len(OUTSIDE)
+    assert len(found) == len(outside)
     words = "is outside the workbook's folder. Copy it next to the workbook and write its name alone."
     assert [one for one in found if words not in one] == []
     inside = tmp_path / "inside"

@@ -42,6 +42,10 @@ def test_sizes_are_exchanged_or_missing_where_those_of_the_type_say_so(
 
 
 def test_the_centre_of_gravity_is_the_rows_own_else_the_types_and_the_axis_that_of_the_angle(tmp_path: Path) -> None:
+    angles = [
+        (0, "X"), (15, "X"), (15.001, None), (-15, "X"), (45, None), (74.999, None), (75, "Y"), (90, "Y"), (105, "Y"),
+        (106, None), (164, None), (165, "X"), (180, "X"), (-90, "Y"), (270, "Y"), (360, "X"), (-345, "X"), (-344, None),
+    ]  # fmt: skip
     header = ["Item", "Floor", "Type", "Centre of gravity [%]"]
     types: Sheet = [["Type", "Breadth [cm]", "Height [cm]", "Centre of gravity [%]"], ["Rack", 60, 200, 60],
                     ["Desk", 70, 75, None]]  # fmt: skip
@@ -54,17 +58,11 @@ def test_the_centre_of_gravity_is_the_rows_own_else_the_types_and_the_axis_that_
     assert inventory.frame()["centre_of_gravity"].tolist() == pytest.approx([0.45, 0.6, 0.5], abs=1e-15)
     assert all(one.more == {} for one in inventory.items)
     header = ["Item", "Floor", "Breadth [cm]", "Height [cm]", "Angle [deg]", "Axis"]
-    rows = [[f"A{at}", "1", 40, 180, angle, None] for at, (angle, _) in enumerate(ANGLES)]
+    rows = [[f"A{at}", "1", 40, 180, angle, None] for at, (angle, _) in enumerate(angles)]
     *found, last = read(tmp_path, [header, *rows, ["B", "1", 40, 180, 90, "X"]]).items
-    assert [one.axis for one in found] == [axis for _, axis in ANGLES] == [axis_of(angle) for angle, _ in ANGLES]
-    assert ["axis" in one.assumed for one in found] == [axis is not None for _, axis in ANGLES]
+    assert [one.axis for one in found] == [axis for _, axis in angles] == [axis_of(angle) for angle, _ in angles]
+    assert ["axis" in one.assumed for one in found] == [axis is not None for _, axis in angles]
     assert (last.axis, "axis" in last.assumed) == ("X", False)
-
-
-ANGLES = [
-    (0, "X"), (15, "X"), (15.001, None), (-15, "X"), (45, None), (74.999, None), (75, "Y"), (90, "Y"), (105, "Y"),
-    (106, None), (164, None), (165, "X"), (180, "X"), (-90, "Y"), (270, "Y"), (360, "X"), (-345, "X"), (-344, None),
-]  # fmt: skip
 
 
 def test_friction_of_the_building(tmp_path: Path) -> None:

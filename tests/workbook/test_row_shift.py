@@ -147,21 +147,19 @@ def _table(changes: dict[tuple[int, int], float | str | bool | None], *, totals:
 
 
 def test_validations_never_come_to_overlap_and_shared_formulas_get_their_own_texts() -> None:
+    shared = (
+        '<sheetData><row r="1"><c r="A1"><v>1</v></c><c r="B1"><f t="shared" ref="B1:B4" si="0">A1*2+$A$4</f></c></row>'
+        '<row r="2"><c r="A2"><v>2</v></c><c r="B2"><f t="shared" si="0"/><v>4</v></c></row>'
+        '<row r="3"><c r="A3"><v>3</v></c><c r="B3"><f t="shared" si="0"/><v>6</v></c></row>'
+        '<row r="4"><c r="A4"><v>4</v></c><c r="B4"><f t="shared" si="0"></f><v>8</v></c></row></sheetData>'
+    )
     tail = '<dataValidations count="2"><dataValidation sqref="A1:A2"/><dataValidation sqref="A3:A9"/></dataValidations>'
     data = minimal('<sheetData><row r="1"><c r="A1"><v>1</v></c></row></sheetData>', tail=tail)
     after = parts_of(open_workbook(data, "book.xlsx").set({"Items": {(3, 0): 3}}).to_bytes())
     assert tail.encode() in after[SHEET]
-    data = open_workbook(minimal(SHARED), "book.xlsx").insert_rows("Items", 3, like=2).to_bytes()
+    data = open_workbook(minimal(shared), "book.xlsx").insert_rows("Items", 3, like=2).to_bytes()
     texts = re.findall("<f[^>]*>([^<]*)</f>", parts_of(data)[SHEET].decode())
     assert texts == ["A1*2+$A$5", "A2*2+$A$5", "A3*2+$A$5", "A4*2+$A$5", "A5*2+$A$5"]
-
-
-SHARED = (
-    '<sheetData><row r="1"><c r="A1"><v>1</v></c><c r="B1"><f t="shared" ref="B1:B4" si="0">A1*2+$A$4</f></c></row>'
-    '<row r="2"><c r="A2"><v>2</v></c><c r="B2"><f t="shared" si="0"/><v>4</v></c></row>'
-    '<row r="3"><c r="A3"><v>3</v></c><c r="B3"><f t="shared" si="0"/><v>6</v></c></row>'
-    '<row r="4"><c r="A4"><v>4</v></c><c r="B4"><f t="shared" si="0"></f><v>8</v></c></row></sheetData>'
-)
 
 
 REFUSED = {

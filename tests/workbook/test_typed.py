@@ -152,35 +152,31 @@ CHOICES = [
 
 
 def test_choices_and_dates_as_they_are_typed_and_dates_that_are_wrong() -> None:
+    wrong_dates = {
+        "31/02/2026": "which is not a date: month 2 of 2026 has 28 days.",
+        "02/31/2028": "which is not a date: month 2 of 2028 has 29 days.",
+        "31 April 2026": "which is not a date: month 4 of 2026 has 30 days.",
+        "2026-13-01": "which is not a date: there is no month 13.",
+        "03/04/2026": "which can be read as 2026-04-03 or as 2026-03-04.",
+        "31/12/26": "the year has two digits.",
+    }
+    dates = [
+        ("2026-12-31", "2026-12-31", ""), ("31/12/2026", "2026-12-31", "date"), ("12.31.2026", "2026-12-31", "date"),
+        ("31-12-2026", "2026-12-31", "date"), ("2026/12/31", "2026-12-31", "date"), ("4/4/2026", "2026-04-04", "date"),
+        ("31 Dec 2026", "2026-12-31", "date"), ("31 December 2026", "2026-12-31", "date"),
+        ("December 31st, 2026", "2026-12-31", "date"), ("31 dicembre 2026", "2026-12-31", "date"),
+        ("1º gen. 2026", "2026-01-01", "date"), ("31-Dec-2026", "2026-12-31", "date"),
+        ("29/02/2028", "2028-02-29", "date"), ("marzo 2026", "marzo 2026", ""), ("2026", "2026", ""),
+    ]  # fmt: skip
     for column, text, choice, word in CHOICES:
         assert find_meant(text, column.choices, "en") == (choice, word), (column.name, text)
     anchored = translate(ITEMS, "it").column("anchored").choices
     assert [find_meant(text, anchored, "it")[1] for text in ("s", "N", "in p", "y")] == ["sì", "no", "in parte", "sì"]
-    assert {text: meant(DATE, text) for text, *_ in DATES} == {text: (date, habit) for text, date, habit in DATES}
-    for text, why in WRONG_DATES.items():
+    assert {text: meant(DATE, text) for text, *_ in dates} == {text: (date, habit) for text, date, habit in dates}
+    for text, why in wrong_dates.items():
         with pytest.raises(CellError) as caught:
             meant(DATE, text)
         assert str(caught.value.message).endswith(why)
-
-
-DATES = [
-    ("2026-12-31", "2026-12-31", ""), ("31/12/2026", "2026-12-31", "date"), ("12.31.2026", "2026-12-31", "date"),
-    ("31-12-2026", "2026-12-31", "date"), ("2026/12/31", "2026-12-31", "date"), ("4/4/2026", "2026-04-04", "date"),
-    ("31 Dec 2026", "2026-12-31", "date"), ("31 December 2026", "2026-12-31", "date"),
-    ("December 31st, 2026", "2026-12-31", "date"), ("31 dicembre 2026", "2026-12-31", "date"),
-    ("1º gen. 2026", "2026-01-01", "date"), ("31-Dec-2026", "2026-12-31", "date"),
-    ("29/02/2028", "2028-02-29", "date"), ("marzo 2026", "marzo 2026", ""), ("2026", "2026", ""),
-]  # fmt: skip
-
-
-WRONG_DATES = {
-    "31/02/2026": "which is not a date: month 2 of 2026 has 28 days.",
-    "02/31/2028": "which is not a date: month 2 of 2028 has 29 days.",
-    "31 April 2026": "which is not a date: month 4 of 2026 has 30 days.",
-    "2026-13-01": "which is not a date: there is no month 13.",
-    "03/04/2026": "which can be read as 2026-04-03 or as 2026-03-04.",
-    "31/12/26": "the year has two digits.",
-}
 
 
 def test_every_cell_that_is_taken_has_a_note_and_a_correction_and_rows_in_code_have_none(tmp_path: Path) -> None:

@@ -134,36 +134,31 @@ def test_a_wrong_value_is_one_error_at_its_cell(tmp_path: Path, sheet: str) -> N
         assert error.startswith(f"{sheet}!{CELLS[sheet]}: {message}"), (header, value, error)
 
 
-UNUSUAL = [
-    ("Items", "Height [cm]", 350, "Height is 350 cm, usual is 20 to 300 cm."),
-    ("Items", "Height [in]", 120, "Height is 120 in, usual is 7.874 to 118.1 in."),
-    ("Floors", "PFA X [g]", 2.5, "PFA X is 2.5 g, usual is 0.01 to 2 g."),
-    ("Floors", "PFA X [cm/s2]", 0.3, "PFA X is 0.3 cm/s2, usual is 9.807 to 1961 cm/s2."),
-]
-
-
 def test_unusual_numbers_and_a_formula_without_address_are_reported_where_they_stand(
     tmp_path: Path,
 ) -> None:
-    for sheet, header, value, message in UNUSUAL:
+    unusual = [
+        ("Items", "Height [cm]", 350, "Height is 350 cm, usual is 20 to 300 cm."),
+        ("Items", "Height [in]", 120, "Height is 120 in, usual is 7.874 to 118.1 in."),
+        ("Floors", "PFA X [g]", 2.5, "PFA X is 2.5 g, usual is 0.01 to 2 g."),
+        ("Floors", "PFA X [cm/s2]", 0.3, "PFA X is 0.3 cm/s2, usual is 9.807 to 1961 cm/s2."),
+    ]
+    for sheet, header, value, message in unusual:
         found = remarks(read_inventory(write_one(tmp_path, sheet, header, value)), "warning")
         assert found == {f"{sheet}!{CELLS[sheet]}: {message} Check the number and the unit."}
     path = change_parts(write(tmp_path), {SHEET: replace('<c r="D2" t="n"><v>180</v>', "<c><f>2*90</f>")})
     assert errors_of(path) == {f"Items!D2: {NO_VALUE}"}
 
 
-@pytest.mark.parametrize("unit", ["mm", "cm", "m", "in", "ft"])
-def test_a_limit_itself_is_allowed_in_every_unit(tmp_path: Path, unit: str) -> None:
-    limits = (5, 20, 300, 600)
-    numbers = [limit * 0.01 / QUANTITIES["length"][unit] for limit in limits]
-    header = ["Item", "Floor", f"Breadth [{unit}]", f"Height [{unit}]", "Centre of gravity [%]"]
-    rows = [[f"A{at}", "1", one, one, 5 if at % 2 else 95] for at, one in enumerate(numbers)]
-    found = read(tmp_path, [header, *rows])
-    assert [one.height for one in found.items] == pytest.approx([limit / 100 for limit in limits])
-
-
-def test_floor_names_of_every_kind_and_letter_case(tmp_path: Path) -> None:
-    """As they are typed in Items, in Floors, and as they are read."""
+def test_a_limit_itself_is_allowed_in_every_unit_and_floors_have_names_of_every_kind(tmp_path: Path) -> None:
+    for unit in ("mm", "cm", "m", "in", "ft"):
+        limits = (5, 20, 300, 600)
+        numbers = [limit * 0.01 / QUANTITIES["length"][unit] for limit in limits]
+        header = ["Item", "Floor", f"Breadth [{unit}]", f"Height [{unit}]", "Centre of gravity [%]"]
+        rows = [[f"A{at}", "1", one, one, 5 if at % 2 else 95] for at, one in enumerate(numbers)]
+        found = read(tmp_path, [header, *rows])
+        assert [one.height for one in found.items] == pytest.approx([limit / 100 for limit in limits]), unit
+    # As they are typed in Items, in Floors, and as they are read.
     names = [(42.0, "42", "42"), ("42", 42, "42"), (" 42 ", "42", "42"), (4.5, 4.5, "4.5"),
              ("E\u0301tage  1", "Étage 1", "Étage 1"), ("b1", "B1", "B1"), ("B\u20131", "B-1", "B-1")]  # fmt: skip
     for typed, defined, name in names:
@@ -177,24 +172,22 @@ def test_floor_names_of_every_kind_and_letter_case(tmp_path: Path) -> None:
     }
 
 
-TEXTS = [
-    ("bell\x07", "bell\ufffd", 1), ("_x0007_", "\ufffd", 1), ("\u202egnp.exe", "gnp.exe", 1),
-    ("a\u200eb\u2066c\u2069", "abc", 3), ("zero\u200b width", "zero width", 1),
-    ("two\nlines\tand a tab", "two\nlines\tand a tab", 0), ("carriage\r\nreturn", "carriage\nreturn", 0),
-    ("=1+1", "=1+1", 0), ("<b>&amp;</b>", "<b>&amp;</b>", 0), ("家具 ✓ ß", "家具 ✓ ß", 0),
-]  # fmt: skip
-
-
 def test_texts_are_cleaned(tmp_path: Path) -> None:
     """Written by XlsxWriter, which escapes control characters as Excel does."""
-    rows = [[f"A{at}", "1", 40, 180, text] for at, (text, *_) in enumerate(TEXTS)]
+    texts = [
+        ("bell\x07", "bell\ufffd", 1), ("_x0007_", "\ufffd", 1), ("\u202egnp.exe", "gnp.exe", 1),
+        ("a\u200eb\u2066c\u2069", "abc", 3), ("zero\u200b width", "zero width", 1),
+        ("two\nlines\tand a tab", "two\nlines\tand a tab", 0), ("carriage\r\nreturn", "carriage\nreturn", 0),
+        ("=1+1", "=1+1", 0), ("<b>&amp;</b>", "<b>&amp;</b>", 0), ("家具 ✓ ß", "家具 ✓ ß", 0),
+    ]  # fmt: skip
+    rows = [[f"A{at}", "1", 40, 180, text] for at, (text, *_) in enumerate(texts)]
     sheets = {"Items": [[*ITEMS[0], "Notes"], *rows], "Floors": FLOORS}
     inventory = read_inventory(write_shared(tmp_path / "book.xlsx", sheets, strings_to_formulas=False))
-    assert [one.notes for one in inventory.items] == [clean for _, clean, _ in TEXTS]
+    assert [one.notes for one in inventory.items] == [clean for _, clean, _ in texts]
     assert remarks(inventory, "warning") == {
         f"Items!E{row}: {removed} control or direction character{' in Notes was' if removed == 1 else 's in Notes were'} "
         "taken out."
-        for row, (*_, removed) in enumerate(TEXTS, 2)
+        for row, (*_, removed) in enumerate(texts, 2)
         if removed
     }
 
