@@ -203,7 +203,6 @@ def test_files_that_lack_something_or_are_too_large_are_named(tmp_path: Path, mo
 
 @pytest.mark.slow
 def test_a_million_rows_are_refused_in_bounded_memory(tmp_path: Path) -> None:
-    """Read in a process of its own, whose memory is limited."""
     import subprocess
     import sys
 

@@ -71,7 +71,7 @@ def list_lines(model: BuildingModel, draft: DraftRoutes) -> Iterator[tuple[Mappi
 # ---------------------------------------------------------------- geometry
 
 
-def test_every_segment_lies_in_its_rooms_and_their_doors_and_crosses_no_wall_or_window(drafted):
+def test_every_segment_lies_in_its_rooms_crosses_no_wall_and_joins_every_room_to_an_exit(drafted):
     model, found = drafted
     names = name_all(model)
     rooms = {names[one.key]: to_polygon(one.area) for one in model.spaces}
@@ -88,10 +88,7 @@ def test_every_segment_lies_in_its_rooms_and_their_doors_and_crosses_no_wall_or_
             assert outside.length < FAR, row
         else:
             assert outside.is_empty, (row, outside.wkt)
-
-
-def test_every_room_is_joined_to_an_exit(drafted):
-    """Over stairs, too: a row of the route to a stair is its flight."""
+    # Over stairs, too: a row of the route to a stair is its flight.
     model, found = drafted
     names, kinds = name_all(model), find_kinds(model, find_sides(model))
     graph = nx.Graph([(row["start"], row["end"]) for row in found.routes])

@@ -13,7 +13,7 @@ def _building(**more: object) -> ImportedBuilding:
     return ImportedBuilding(**(rows | more))
 
 
-def test_rows_of_every_sheet_come_back_in_the_language_in_use() -> None:
+def test_rows_of_every_sheet_come_back_in_the_language_in_use_with_names_told_apart() -> None:
     """Positions, outlines and routes are what building models tell, beyond COBie."""
     data = build_workbook(
         _building(
@@ -33,9 +33,6 @@ def test_rows_of_every_sheet_come_back_in_the_language_in_use() -> None:
     with speaking(load_catalogue("it")):
         data = build_workbook(_building(types=[{"type": "Desk", "breadth": 60.0, "height": 75.0}]))
     assert read_inventory(data, building=SHAKEN).language == "it"
-
-
-def test_long_names_and_those_alike_in_another_letter_case_are_told_apart_and_rooms_of_a_segment_not_cut() -> None:
     first, second = name_apart(["x" * 500] * 2)
     assert (len(first), len(second)) == (LONGEST_NAME, LONGEST_NAME)
     assert second.endswith("x (2)")

@@ -30,7 +30,6 @@ WARDROBE = (-0.3, -0.5, 0.1, 0.3, 0.5, 2.0)
 
 
 def test_a_plinth_set_back_at_the_front_only_and_a_base_in_the_form_of_a_cross():
-    """The middle of the body is 20 cm from the front edge of a plinth that is 50 cm deep."""
     for turn in (0.0, 30.0, -75.0):
         found = find_box(draw(WARDROBE, (-0.3, -0.5, 0.0, 0.2, 0.5, 0.1), turn=turn))
         assert (found.breadth, found.support_breadth) == pytest.approx((0.6, 0.5)), turn

@@ -53,9 +53,26 @@ TYPED = {
 # ---------------------------------------------------------------- the same model again
 
 
-def test_the_same_import_changes_nothing_to_the_byte(book: bytes) -> None:
+def test_the_same_import_changes_nothing_and_another_leaves_every_other_byte(book: bytes, tmp_path: Path) -> None:
     found = update_workbook(book, building(), "house.xlsx")
     assert (found.data, found.changes, found.problems, found.is_changed) == (book, (), (), False)
+    # A comment, a part that no program knows, a sheet of the user, and the sheets that the model does not tell of.
+    path = tmp_path / "house.xlsx"
+    path.write_bytes(book)
+    kind = '<Default Extension="bin" ContentType="application/octet-stream"/></Types>'
+    change_parts(path, {"xl/unknown.bin": bytes(range(256)), "[Content_Types].xml": books.replace("</Types>", kind)})
+    data = path.read_bytes()
+    found = update(data, changed(p3={"breadth": 60.0}, p4={"x": 9.0}))
+    before, after = parts_of(data), parts_of(found.data)
+    different = {name for name in before if before[name] != after.get(name)}
+    assert before.keys() == after.keys()
+    assert different <= {"xl/worksheets/sheet4.xml", "xl/worksheets/sheet9.xml", "xl/workbook.xml"}  # Items, Lists
+    items, new = (one["xl/worksheets/sheet4.xml"].split(b"<row ") for one in (before, after))
+    live = table(data).letters["breadth"].encode()
+    unlike = [
+        at for at, (one, other) in enumerate(zip(items, new, strict=True)) if live + b'4"' in one and one != other
+    ]
+    assert unlike == [4]
 
 
 @pytest.mark.slow
@@ -146,26 +163,6 @@ def test_what_people_typed_and_what_the_model_lost_stays_and_is_listed(book: byt
     assert texts(update(path.read_bytes())) == [
         f"Items {cell} Breadth [cm] of A102-03 stays 50; the model has 54.5: the cell holds a formula"
     ]
-
-
-def test_every_other_byte_of_the_file_stays(book: bytes, tmp_path: Path) -> None:
-    """A comment, a part that no program knows, a sheet of the user, and the sheets that the model does not tell of."""
-    path = tmp_path / "house.xlsx"
-    path.write_bytes(book)
-    kind = '<Default Extension="bin" ContentType="application/octet-stream"/></Types>'
-    change_parts(path, {"xl/unknown.bin": bytes(range(256)), "[Content_Types].xml": books.replace("</Types>", kind)})
-    data = path.read_bytes()
-    found = update(data, changed(p3={"breadth": 60.0}, p4={"x": 9.0}))
-    before, after = parts_of(data), parts_of(found.data)
-    different = {name for name in before if before[name] != after.get(name)}
-    assert before.keys() == after.keys()
-    assert different <= {"xl/worksheets/sheet4.xml", "xl/worksheets/sheet9.xml", "xl/workbook.xml"}  # Items, Lists
-    items, new = (one["xl/worksheets/sheet4.xml"].split(b"<row ") for one in (before, after))
-    live = table(data).letters["breadth"].encode()
-    unlike = [
-        at for at, (one, other) in enumerate(zip(items, new, strict=True)) if live + b'4"' in one and one != other
-    ]
-    assert unlike == [4]
 
 
 @pytest.mark.slow
@@ -292,7 +289,6 @@ RENAMED = "it seems to have been renamed"
 
 
 def test_what_people_renamed_keeps_its_name_for_new_pieces_too(book: bytes) -> None:
-    """A floor, a room, and a place, which is found by its position."""
     data = renamed(book, {"Level 1": "EG", "A102 Office": "Archive", "Exit A101": "Main entrance"})
     found = update(data, building(items=[*changed(p3={"breadth": 60.0}).items, piece(7, "Level 1", "A102 Office")]))
     assert texts(found) == [
@@ -357,7 +353,6 @@ def test_floors_are_added_their_plans_replaced_and_elevations_that_people_correc
 
 
 def test_rooms_and_types_follow_the_model_and_those_that_people_chose_stay(book: bytes) -> None:
-    """The only piece of a room: that it stood in another room of the model is no name that people gave."""
     found = update(book, changed(p5={"room": "B202 Store"}, p6={"room": "A102 Office"}))
     assert [one.now for one in found.changes] == ["B202 Store", "A102 Office"]
     data = book

@@ -189,7 +189,6 @@ def test_parts_of_the_table_are_sorted_and_filtered_each_by_itself(browser, tmp_
 
 
 def test_pieces_of_the_plan_and_rows_lead_to_each_other(open_page):
-    """By mouse, by keyboard and back, also where the row is filtered out."""
     page = open_page()
     _filter(page, "Floor").select_option("2")
     assert "A1" not in _shown(page)

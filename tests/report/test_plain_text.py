@@ -128,8 +128,7 @@ class _Tags(HTMLParser):
             self.wrong.append(tag)
 
 
-def test_html(outputs):
-    """It is well formed, fetches nothing and runs its own script alone."""
+def test_html_and_word(outputs):
     _, written = outputs
     text = written["html"].read_text(encoding="utf-8")
     tags = _Tags()
@@ -146,9 +145,6 @@ def test_html(outputs):
     assert "=HYPERLINK(&#34;http://x&#34;,&#34;y&#34;)" in text
     assert PATH in text
     assert _no_hidden(text)
-
-
-def test_word(outputs):
     _, written = outputs
     texts = [
         cell.text for table in docx.Document(str(written["docx"])).tables for row in table.rows for cell in row.cells

@@ -107,7 +107,6 @@ def _comparison(folder):
 
 
 def test_reports_are_valid_and_the_validator_can_say_no(tmp_path, jars):
-    """Comparisons too; all are validated by one start of Java."""
     strange = _strange(tmp_path)
     good = [*strange, *_comparison(tmp_path)]
     plain = tmp_path / "plain.pdf"

@@ -152,7 +152,6 @@ def test_a_pdf_that_was_changed_is_the_users(tmp_path, results):
 
 @pytest.mark.parametrize("files", [None, {}, {"items.csv": None, "report.html": None}, {"items.csv": 1}])
 def test_a_list_without_hashes_makes_nothing_a_report(tmp_path, results, files):
-    """As versions without a list wrote it, and as anybody may."""
     write_json(results, tmp_path / "results.json", files=files)
     for name in ("report.html", "items.csv", "mine.txt", "annex.pdf"):
         (tmp_path / name).write_text("mine")

@@ -290,7 +290,6 @@ def several_motions(tmp_path_factory):
 
 
 def test_of_several_motions_the_strongest_that_can_start_the_piece_governs(several_motions):
-    """Along an axis, or of a record."""
     book, results = several_motions, several_motions.results
     largest = {one.item.item: max((case.motion.pfv_cm_s, case.motion.pfa_g) for case in one.cases) for one in results}
     passed = {one.item.item for one in results if one.governing.motion.pfv_cm_s < largest[one.item.item][0]}

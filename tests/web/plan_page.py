@@ -74,6 +74,11 @@ class PlanPage:
         self.mouse.click(*self.place(x, y), **options)
         return self
 
+    def keys(self, *names):
+        for name in names:
+            self.keyboard.press(name)
+        return self
+
     def tab(self, name):
         self.panel.locator(f"[data-panel={name}]").click()
         return self

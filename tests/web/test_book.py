@@ -116,7 +116,6 @@ def test_what_the_formulas_tell_and_the_core_leaves_out(book, filled):
 
 
 def test_what_is_held_is_what_is_written(book, tmp_path):
-    """The snapshot of a book with edits of every kind equals the reading of the bytes that it writes."""
     edit(
         book,
         *(("Items", 300, at(name), value) for name, value in

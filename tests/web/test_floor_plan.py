@@ -58,7 +58,6 @@ def _area(rings):
 
 
 def test_falls_end_at_the_walls_as_in_the_report(path):
-    """Pieces, falls, rooms and segments are those of the report."""
     book, results, falls = hold(path), assess.run(assess.read_inventory(path), UNVERIFIED), 0
     for page, expected in zip(Content(results).floors, plans_of(results), strict=True):
         if expected is None:

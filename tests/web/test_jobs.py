@@ -94,7 +94,6 @@ def test_results_are_those_of_the_command(served_here, tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_a_job_ends_with_its_files_is_found_again_and_rows_that_changed_since_are_stale(running):
-    """Also by another tab of the browser; a report is shown in a frame that belongs to no address."""
     asked = {"verify": "none", "formats": ["html"]}
     assert running.client.post("/api/job", asked).json()["job"]["state"] == "running"
     assert running.client.post("/api/job", asked).status == 409

@@ -122,13 +122,11 @@ def test_rooms_doors_and_a_segment_are_drawn_and_its_state_follows(empty):
         room,
         plan.values("Places", "place")[3],
     )
-    plan.keyboard.press("Escape")
-    plan.keyboard.press("Escape")
+    plan.keys("Escape", "Escape")
     expect(plan.page.locator("[data-tool=select]")).to_have_attribute("aria-pressed", "true")
     expect(plan.page.locator(".band")).to_have_class(re.compile("state-not-known"))  # no furniture is listed
     for _ in range(3):
-        plan.keyboard.press("Control+z")
-        plan.settle()
+        plan.keys("Control+z").settle()
     assert plan.values("Places", "place") == {}
 
 
@@ -157,8 +155,7 @@ def test_corners_of_a_room_are_dragged_added_and_taken_out_and_a_new_name_keeps_
     plan.mouse.dblclick(*plan.place(4, 1))
     assert len(outline().split("; ")) == 4
     for _ in range(3):
-        plan.keyboard.press("Control+z")
-        plan.settle()
+        plan.keys("Control+z").settle()
     assert outline() == "0 0; 8 0; 8 6; 0 6"
     plan.click(6.5, 1)
     plan.panel.get_by_label("Place").fill("Great hall")
@@ -190,8 +187,7 @@ def test_a_click_on_a_segment_splits_it_and_one_beside_it_tells_what_to_click(pl
     assert plan.values("Routes", "start")[4] == "1 corridor 1", "the junction is where the next segment begins"
     assert plan.values("Routes", "end")[4] == "Hall"
     assert plan.values("Routes", "route")[4] == "Side way"
-    plan.keyboard.press("Control+z")
-    plan.keyboard.press("Control+z")
+    plan.keys("Control+z", "Control+z")
     assert plan.values("Routes", "end") == {2: "Door"}
     assert plan.values("Places", "place") == {2: "Hall", 3: "Door"}
 

@@ -120,9 +120,7 @@ def test_keys_alone_select_move_copy_and_take_off(plan):
             break
     expect(plan.piece(A2)).to_be_focused()
     expect(plan.piece(A2)).to_have_attribute("aria-label", re.compile("A2.*class.*high.*chance.*X 5.00 m, Y 4.00 m"))
-    plan.keyboard.press("Enter")
-    plan.keyboard.press("ArrowLeft")
-    plan.keyboard.press("Shift+ArrowUp")
+    plan.keys("Enter", "ArrowLeft", "Shift+ArrowUp")
     assert plan.at(A2) == (4.95, 4.01, 0)
     plan.keyboard.down("ArrowRight")
     for _ in range(9):
@@ -150,14 +148,12 @@ def test_keys_alone_select_move_copy_and_take_off(plan):
 
 def test_a_copy_lies_beside_the_original_or_on_another_floor(plan):
     plan.click(2, 2)
-    plan.keyboard.press("Control+c")
-    plan.keyboard.press("Control+v")
+    plan.keys("Control+c", "Control+v")
     assert plan.at(FREE)[:2] == (2.5, 1.5)
     expect(plan.say()).to_have_text("1 piece pasted")
     plan.keyboard.press("Control+v")
     assert plan.at(FREE + 1)[:2] == (3, 1)
-    plan.keyboard.press("Control+z")
-    plan.keyboard.press("Control+z")
+    plan.keys("Control+z", "Control+z")
     plan.settle()
     plan.click(2, 2)
     plan.keyboard.press("Control+c")

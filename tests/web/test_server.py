@@ -99,17 +99,13 @@ def test_changes_of_a_held_workbook_that_are_not_downloaded_are_kept_at_the_end(
 
 
 @pytest.mark.slow
-def test_stopping_does_not_wait_for_a_browser_that_is_silent(served):
+def test_stopping_does_not_wait_for_a_silent_browser_and_a_port_that_is_taken_is_named(served, tmp_path):
     server = served()
     line = socket.create_connection((server.client.host, server.client.port))
     line.sendall(b"POST /api/edit HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 1000\r\n\r\n{")
     status, _, err = server.stop()
     line.close()
     assert (status, err) == (0, "Stopped.\n")
-
-
-@pytest.mark.slow
-def test_a_port_that_is_taken_is_named(served, tmp_path):
     port = str(served().client.port)
     words = [sys.executable, "-m", "assess", "open", "--no-browser", "--port", port]
     done = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, timeout=PATIENCE, check=False)
@@ -120,7 +116,6 @@ def test_a_port_that_is_taken_is_named(served, tmp_path):
 @posix
 @pytest.mark.slow
 def test_enter_in_the_terminal_opens_the_page_again(tmp_path):
-    """With a new ticket, for those who closed the browser, or use another one."""
     import pty
 
     leader, follower = pty.openpty()

@@ -43,7 +43,7 @@ def test_a_template_has_classes_at_once(served):
 
 
 @pytest.mark.slow
-def test_a_new_workbook_replaces_no_file_and_leaves_its_folder_by_no_name(served):
+def test_a_new_workbook_replaces_no_file_and_every_text_of_the_page_is_found(served):
     server = served()
     taken = server.folder / "taken.xlsx"
     taken.write_bytes(b"mine")
@@ -61,11 +61,7 @@ def test_a_new_workbook_replaces_no_file_and_leaves_its_folder_by_no_name(served
     assert [one.name for one in server.folder.iterdir()] == ["taken.xlsx"]
     assert taken.read_bytes() == b"mine"
     assert server.client.get("/api/state").json()["state"] is None
-
-
-@pytest.mark.slow
-def test_every_text_of_the_page_is_found_where_its_modules_name_it(served):
-    """A call of `t` or `tn` with anything but plain literals would stay English in every language."""
+    # A call of `t` or `tn` with anything but plain literals would stay English in every language.
     called = sum(
         len(re.findall(r"(?<![\w$.])(?<!function )tn?\(", path.read_text(encoding="utf-8")))
         for path in texts.PAGE.rglob("*.mjs")

@@ -74,12 +74,20 @@ SILENT: list[tuple[list[tuple[str, list[Any]]], dict[str, dict[str, Any]]]] = [
 ]  # fmt: skip
 
 
-def test_sound_workbooks_say_nothing(tmp_path: Path) -> None:
+def test_sound_workbooks_say_nothing_and_warnings_come_by_cell_each_once(tmp_path: Path) -> None:
     for more, changes in SILENT:
         inventory = sound(tmp_path, *more, **changes)
         assert inventory.problems == (), (more, changes)
         if set(changes) <= {"aisle", "hall"}:
             assert [one.floor for one in inventory.routes[:3]] == ["2", "", "1"]
+    for changes, expected in WARNINGS.values():
+        inventory = sound(tmp_path, **changes)
+        assert [f"{one.severity} {one}" for one in inventory.problems] == [f"warning {expected}"]
+    for more, changes, told in MORE:
+        assert {f"{one.severity} {one}" for one in sound(tmp_path, *more, **changes).problems} == told
+    routes: Sheet = [["Route", "Segment"], ["R1", "a"], ["R1", "b"]]
+    path = write(tmp_path, [HEADS["Items"], ITEMS["B2"]], TWO_FLOORS, Routes=routes)
+    assert [str(problem) for problem in read_inventory(path).problems] == [f"Routes!A1: {CLEAR}"]
 
 
 LISTED = "Choose one of the {0} sheet, or add it there."
@@ -217,17 +225,6 @@ WARNINGS: Mapping[str, tuple[dict[str, dict[str, Any]], str]] = {
         "Let a segment begin or end at every room, or leave it out of Places.",
     ),
 }  # fmt: skip
-
-
-def test_warnings_by_cell_each_once(tmp_path: Path) -> None:
-    for changes, expected in WARNINGS.values():
-        inventory = sound(tmp_path, **changes)
-        assert [f"{one.severity} {one}" for one in inventory.problems] == [f"warning {expected}"]
-    for more, changes, told in MORE:
-        assert {f"{one.severity} {one}" for one in sound(tmp_path, *more, **changes).problems} == told
-    routes: Sheet = [["Route", "Segment"], ["R1", "a"], ["R1", "b"]]
-    path = write(tmp_path, [HEADS["Items"], ITEMS["B2"]], TWO_FLOORS, Routes=routes)
-    assert [str(problem) for problem in read_inventory(path).problems] == [f"Routes!A1: {CLEAR}"]
 
 
 MORE: list[tuple[list[tuple[str, list[Any]]], dict[str, dict[str, Any]], set[str]]] = [

@@ -21,7 +21,6 @@ def told(folder: Path, *routes: str) -> list[str]:
 
 
 def test_drafted_routes_are_warned_of_once_and_a_long_name_keeps_the_mark(tmp_path):
-    """Each route has many segments."""
     mend = "was drafted from a building model. Walk it, correct it, and take '(draft)' off its name."
     assert told(tmp_path, "To Exit A (draft)") == [f"warning Routes!A2: Route 'To Exit A (draft)' {mend}"]
     assert told(tmp_path, "Old", "To A (draft)", "To A (draft)", "to a (DRAFT)", "To B (draft)") == [

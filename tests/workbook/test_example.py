@@ -70,7 +70,7 @@ def stored(path):
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
 @pytest.mark.slow
-def test_every_use_lacks_nothing_but_shaking(tmp_path):
+def test_every_use_lacks_nothing_but_shaking_and_its_example_shows_the_results_of_a_run(tmp_path):
     for use, (units, language) in zip(USES, cycle([("si", "it"), ("imperial", "en")])):
         inventory = read_inventory(new(tmp_path, use, units, language), strict=False)
         assert {one.sheet for one in inventory.errors} <= {"Floors", "Piani", "Building", "Edificio"}, use
@@ -78,6 +78,16 @@ def test_every_use_lacks_nothing_but_shaking(tmp_path):
             rows = room_content(use, units).rows
         assert len(inventory.catalogue) == len(rows["Catalogue"])
         assert (inventory.building.use, inventory.language) == (rows["Building"][0]["use"], language)
+    for use, (units, language) in zip(USES, cycle([("si", "en"), ("imperial", "it")])):
+        path = new(tmp_path, use, units, language, example=True)
+        inventory = read_inventory(path)
+        assert inventory.problems == ()
+        assert [item.item for item in inventory.items] == [row["item"] for row in room_content(use).rows["Items"]]
+        with speaking(load_catalogue(language)):
+            wanted = live_values(inventory)
+            assert inventory.building.scenario == load_catalogue(language).find(SCENARIO)
+        for row, values in zip(stored(path), wanted, strict=True):
+            assert row == tuple(one if isinstance(one, str) else pytest.approx(one, abs=1e-3) for one in values)
 
 
 @pytest.mark.filterwarnings("ignore:.*extension is not supported")
@@ -92,21 +102,6 @@ def test_without_shaking_the_live_columns_tell_the_slenderness(tmp_path):
     computed = by_formualizer(poison(path))
     for at, row in enumerate(shown, 2):
         assert computed[at] == [pytest.approx(row[0], abs=AGREEMENT), *row[1:]]
-
-
-@pytest.mark.filterwarnings("ignore:.*extension is not supported")
-@pytest.mark.slow
-def test_an_example_of_a_use_can_be_run_and_shows_its_results(tmp_path):
-    for use, (units, language) in zip(USES, cycle([("si", "en"), ("imperial", "it")])):
-        path = new(tmp_path, use, units, language, example=True)
-        inventory = read_inventory(path)
-        assert inventory.problems == ()
-        assert [item.item for item in inventory.items] == [row["item"] for row in room_content(use).rows["Items"]]
-        with speaking(load_catalogue(language)):
-            wanted = live_values(inventory)
-            assert inventory.building.scenario == load_catalogue(language).find(SCENARIO)
-        for row, values in zip(stored(path), wanted, strict=True):
-            assert row == tuple(one if isinstance(one, str) else pytest.approx(one, abs=1e-3) for one in values)
 
 
 @pytest.mark.slow

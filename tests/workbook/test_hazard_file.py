@@ -28,7 +28,6 @@ def fault(folder: Path, **building: Any):
 
 
 def test_it_is_read_its_hash_kept_and_of_many_sites_the_nearest_is_taken(tmp_path):
-    """From beside the workbook, or handed over as bytes."""
     data = write_hazard(tmp_path, points=7).read_bytes()
     path = workbook(tmp_path, hazard="hazard.csv")
     inventory = assess.read_inventory(path)

@@ -44,7 +44,6 @@ def example(folder: Path, language: str) -> Path:
 
 
 def test_labels_can_be_told_apart_and_fit_the_spreadsheet() -> None:
-    """Each label names one column: in its own language, and against those of the other."""
     with speaking(load_catalogue("it")):
         for sheet, italian in zip(SHEETS, ITALIAN, strict=True):
             english, labels = ([plain(one.label) for one in said.columns] for said in (sheet, italian))

@@ -597,25 +597,19 @@ def test_an_unreadable_unit_of_ground_velocity_shows_no_class(tmp_path: Path, pg
     assert by_formualizer(poison(path))[2][1] == shown
 
 
-def shown_of(
-    folder: Path, item: dict[str, Any], floors: Rows | None = None, catalogue: Rows | None = None, **building: Any
-) -> Live:
-    return shown_rows(folder, [item], floors, catalogue, **building)[0]
-
-
 def test_floors_without_a_motion_or_a_name_show_no_class_and_those_beside_them_keep_theirs(tmp_path: Path) -> None:
     """They may be interpolated, which is the program's task."""
-    assert shown_of(tmp_path, {}, scenario_kind="recorded")[1:] == ["shaking?"] * 7
+    assert shown_rows(tmp_path, [{}], scenario_kind="recorded")[0][1:] == ["shaking?"] * 7
     floors: Rows = [{"floor": "1", "pfa_x": 0.5, "elevation": 4}, *({"floor": f"r{z}", "elevation": z} for z in (0, 8))]
     between = [floors[0], *({**floor, "record_x": "roof.csv"} for floor in floors[1:])]
     (tmp_path / "between").mkdir()
-    assert shown_of(tmp_path / "between", {}, between, scenario_kind="recorded")[1:] == ["run assess"] * 7
+    assert shown_rows(tmp_path / "between", [{}], between, scenario_kind="recorded")[0][1:] == ["run assess"] * 7
     # Rows without a name are no floors, whatever else they hold; nor is a blank name theirs.
     floors = [{"floor": "1", "elevation": 4}, {"pfa_x": 0.3, "elevation": 0}, {"pfa_x": 0.3, "elevation": 8}]
     named, blank = shown_rows(tmp_path, [{}, {"floor": None}], floors)
     assert (named[1:], blank[1:]) == (["shaking?"] * 7, ["floor?"] * 7)
     floors = [{"floor": "0", "elevation": 0}, {"floor": "1", "pfa_x": 0.5, "elevation": 4}]
-    assert shown_of(tmp_path, {}, floors, ground_pga=0.2)[1] == 0.5
+    assert shown_rows(tmp_path, [{}], floors, ground_pga=0.2)[0][1] == 0.5
 
 
 @pytest.mark.parametrize("kind", ["ASCE 7-22", "ASCE 7-16", "EN 1998-1", "NTC 2018"])
@@ -642,16 +636,16 @@ def test_the_class_of_what_is_anchored_equals_the_program(tmp_path: Path, anchor
 
 
 def test_what_is_anchored_says_so_without_shaking_and_a_typed_capacity_is_left_to_the_program(tmp_path: Path) -> None:
-    assert shown_of(tmp_path, {"anchored": "yes", "floor": "9"})[5] == "floor?"
-    assert shown_of(tmp_path, {"anchored": "yes"}, [{"floor": "1", "record_x": "roof.csv"}])[1:] == [
+    assert shown_rows(tmp_path, [{"anchored": "yes", "floor": "9"}])[0][5] == "floor?"
+    assert shown_rows(tmp_path, [{"anchored": "yes"}], [{"floor": "1", "record_x": "roof.csv"}])[0][1:] == [
         *["run assess"] * 4, *["anchored"] * 2, "run assess",
     ]  # fmt: skip
     (tmp_path / "none").mkdir()
-    assert shown_of(tmp_path / "none", {"anchored": "yes"}, [{"floor": "1"}])[1:] == [
+    assert shown_rows(tmp_path / "none", [{"anchored": "yes"}], [{"floor": "1"}])[0][1:] == [
         *["shaking?"] * 4, *["anchored"] * 2, "shaking?",
     ]  # fmt: skip
     held = {"anchored": "yes", "bracket_capacity": 2.0}
-    assert shown_of(tmp_path, held, [{"floor": "1"}])[1:] == [
+    assert shown_rows(tmp_path, [held], [{"floor": "1"}])[0][1:] == [
         *["shaking?"] * 4, *["run assess"] * 2, "shaking?",
     ]  # fmt: skip
     unshaken = without_shaking(Content({"Items": [{"item": "A1", "floor": "1", "breadth": 40, "height": 180, **held}],
@@ -666,4 +660,4 @@ def test_whether_it_can_rock_rests_on_numbers_alone(tmp_path: Path) -> None:
     assert good[7] in ("yes", "no")
     assert [row[7] for row in others] == ["check"] * 4
     for uncertainty in ("0,4", -1):
-        assert shown_of(tmp_path, {"breadth": 150}, motion_uncertainty=uncertainty)[7] == "check"
+        assert shown_rows(tmp_path, [{"breadth": 150}], motion_uncertainty=uncertainty)[0][7] == "check"

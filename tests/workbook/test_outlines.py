@@ -14,7 +14,6 @@ SQUARE = ((0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0))
 
 
 def test_an_outline_is_its_corners_and_a_damaged_one_says_what_is_wrong(tmp_path):
-    """Angled, either way round, with corners on a side."""
     for text in (
         "0 0; 6 0; 6 4; 0 4", "0 0;6 0;6 4;0 4;", " 0 0 ; 6.0 0 ;\n6 4; 0 4; 0 0", "0  0\n6 0\n6 4\n0 4",
         "+0 0; 6. .0; 6 4; 0 4", "0,0 0; 6,00 0; 6 4,0; 0,000 4",

@@ -73,7 +73,6 @@ def test_headers_in_any_order_and_spelling_and_below_a_title(tmp_path: Path) -> 
 
 
 def test_unknown_columns_are_kept_and_a_row_without_an_entry_is_left_out(tmp_path: Path) -> None:
-    """But for live ones; none of these is a slip of a column."""
     live = ["B/H", "PFA used [g]", "OR", "Kaneko-Hayashi", "Class (formula)"]
     own = [
         "Picture", "Inventory no.", "Bought", "Mass [kg]", "Mass", "Colour", "Owner", "Age [years]", "Z [m]",

@@ -210,7 +210,6 @@ def test_texts_and_numbers() -> None:
 
 
 def test_what_cannot_be_changed_is_refused_by_name() -> None:
-    """Values that a cell cannot hold, addresses that are none, and a sheet that is missing."""
     before = minimal("<sheetData/>")
     values: list[Any] = [math.nan, math.inf, -math.inf, 1e308, 10**400, "x" * 32_768]
     for value in values:
@@ -372,7 +371,6 @@ def test_hostile_parts() -> None:
 @settings(max_examples=60, deadline=None)
 @pytest.mark.slow
 def test_any_sheet(old: dict[tuple[int, int], Any], new: dict[tuple[int, int], Any]) -> None:
-    """What is read afterwards is what was there, with the changes in it."""
     packed = io.BytesIO()
     with xlsxwriter.Workbook(packed, {"strings_to_formulas": False}) as book:
         page = book.add_worksheet("Items")

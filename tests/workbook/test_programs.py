@@ -73,7 +73,6 @@ def test_files_by_libreoffice(tmp_path: Path) -> None:
 
 
 def test_signs_without_width_round_a_text_and_the_case_of_names_of_parts_do_not_count(tmp_path: Path) -> None:
-    """Nor do case and spaces of a sheet's name count."""
     for form in ("\ufeff{}", "{}\u200b", "\u2060{}\u2060", "{}_x000D_\n", "\r\n{}"):
         items = [[form.format(one) if isinstance(one, str) else one for one in row] for row in ITEMS]
         path = write_book(tmp_path / "book.xlsx", {" ITEMS": items, "floors ": FLOORS})

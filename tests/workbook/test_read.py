@@ -116,7 +116,6 @@ def test_rows_in_code_get_the_checks_and_messages_of_a_workbook() -> None:
 
 
 def test_a_faulty_row_or_sheet_is_left_out_with_the_rows_that_need_it(tmp_path: Path) -> None:
-    """Or a line of the building, alone."""
     items = [*ITEMS, ["A2", "1", 40, 1.8], ["A3", "1", 50, 170], ["A3", "1", 50, 170]]
     path = write(tmp_path, items, Building=[["Use", "school"], ["Storeys", "many"]])
     inventory = lenient(path)

@@ -66,7 +66,6 @@ def test_the_centre_of_gravity_is_the_rows_own_else_the_types_and_the_axis_that_
 
 
 def test_friction_of_the_building(tmp_path: Path) -> None:
-    """Also where it is changed afterwards."""
     inventory = read(tmp_path, [[*ITEMS[0], "Friction"], [*ITEMS[1], None], ["A2", "1", 40, 180, 0.7]])
     assert inventory.items[0].friction is None
     changed = dataclasses.replace(inventory, building=dataclasses.replace(inventory.building, friction=0.3))

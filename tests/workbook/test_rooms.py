@@ -21,16 +21,13 @@ def told(folder: Path, *pieces: tuple[str, str, int | None], room: str = "Corrid
     return [f"{one.severity} {one}" for one in found.problems if "Room" in one.message or "room" in one.message]
 
 
-def test_a_slip_is_told_once_with_its_pieces(tmp_path: Path) -> None:
+def test_a_slip_is_told_once_with_its_pieces_and_that_of_a_segment_there_alone(tmp_path: Path) -> None:
     assert told(tmp_path, ("1", "Coridor", None), ("1", "coridor ", 4), ("1", "Corridors", None)) == [
         "warning Items!C3: Room 'Coridor' is not that of any segment, so its 5 pieces do not count beside those of "
         "'Corridor' unless they name them. Did you mean Corridor?",
         "warning Items!C5: Room 'Corridors' is not that of any segment, so the piece does not count beside those of "
         "'Corridor' unless it names them. Did you mean Corridor?",
     ]
-
-
-def test_what_is_no_slip_of_a_piece_and_what_is_a_slip_of_the_segment(tmp_path: Path) -> None:
     pieces = [("1", name, None) for name in ("corridor", "Kitchen", "Room 12", "Hal", "Hall", "Roof", "")]
     assert told(tmp_path, *pieces) == []
     assert told(tmp_path, ("2", "Coridor", None)) == [], "on another floor it keeps nothing away"

@@ -98,7 +98,6 @@ def test_texts_stay_texts(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_more_rows_than_prepared(tmp_path: Path) -> None:
-    """A longer table has its drop-downs, formulas and lists all the way down."""
     count = max(ROWS.values()) + 20
     floors = [{"floor": f"F{n}", "pfa_x": 0.5} for n in range(count)]
     types = [{"type": f"T{n}", "breadth": 40, "height": 180} for n in range(count)]

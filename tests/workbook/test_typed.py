@@ -180,7 +180,6 @@ def test_choices_and_dates_as_they_are_typed_and_dates_that_are_wrong() -> None:
 
 
 def test_every_cell_that_is_taken_has_a_note_and_a_correction_and_rows_in_code_have_none(tmp_path: Path) -> None:
-    """Those typed as asked for have none."""
     items: Sheet = [["Item", "Floor", "Breadth [cm]", "Height [cm]", "Anchored", "Against wall", "Notes"],
                     ["A1", "B\u20131", "45 cm", "1.80 m", "N", True, "x"], ["A2", "B-1 ", 45.5, "'200", True, "no", 4],
                     ["A3", "B-1", 45, 180, "no", None, None]]  # fmt: skip
