@@ -27,7 +27,6 @@ def _read(*paths):
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore:.*extension is not supported")
 @pytest.mark.parametrize(
     "name",
     [

@@ -86,7 +86,6 @@ def _no_hidden(text):
     return not re.search("[\x00-\x08\x0b\x0c\x0e-\x1f\u202a-\u202e\u2066-\u2069\u200e\u200f]", text)
 
 
-@pytest.mark.filterwarnings("ignore:.*extension is not supported")
 def test_excel_which_counts_a_floor_with_such_a_name(outputs):
     """A name such as =HYPERLINK(...) is no criterion: the floor's pieces are counted."""
     results, written = outputs

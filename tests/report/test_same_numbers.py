@@ -19,8 +19,6 @@ from tests.recalculate import stored_cells
 from tests.report.parallel import BASES, assess_rich, read_csv, read_html, read_items, read_json, recalculate
 from tests.report.reading import no_figures, read_text
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
-
 LABELS = {risk.word: risk.label for risk in RiskClass}
 
 

@@ -11,7 +11,7 @@ from assess.risk import LIMITS
 from docs.samples import NAMES, SAMPLES
 from tests.alike import differences, flatten, strip_numbers
 
-pytestmark = [pytest.mark.long, pytest.mark.filterwarnings("ignore:.*extension is not supported")]
+pytestmark = pytest.mark.long
 
 SKIPPED = re.compile(r"/(class|class_upper|lowered_from|flags/\d+|overturned)$")
 """Classes are held against their limits; of 200 draws the share is held, not the count."""

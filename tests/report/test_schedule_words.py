@@ -23,8 +23,6 @@ ITEMS = [
     TALL | {"item": "firm", "room": "Gamma", "anchored": "partly", "bracket_capacity": 5},
 ]
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
-
 
 def assess_these(folder, items=ITEMS, **building):
     building = {"motion_uncertainty": 0.4} | building

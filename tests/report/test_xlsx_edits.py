@@ -13,8 +13,6 @@ from assess.risk import RiskClass
 from tests.recalculate import evaluate, libreoffice, needs_libreoffice, stored_cells, write_report
 from tests.workbooks import UNVERIFIED, assessed, parts_of, write
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
-
 FLOORS = [{"floor": "1", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.2}, {"floor": "2", "pfa_x": 0.5, "pfv_x": 40.0}]
 SIZES = [(20, 200), (30, 200), (36, 92), (45, 90), (60, 60), (28, 180), (33, 170)]
 ITEMS: list[dict[str, Any]] = [

@@ -25,8 +25,6 @@ from tests.report.routed import DOUBTED, assess_routed
 from tests.workbook.books import read_part
 from tests.workbooks import FLOORS, ITEMS, assessed, parts_of
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
-
 NAMES = ["Summary", "Work list", "Floors", "Items", "Motions", "Routes", "Methods", "Assumptions", "Quality log"]
 LONG = "A very long name of a cabinet " * 10
 

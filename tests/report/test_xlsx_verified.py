@@ -19,8 +19,6 @@ from tests.recalculate import compare_formulas, evaluate, write_report
 from tests.report.parallel import BASES, write_records
 from tests.workbooks import assessed, write
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
-
 FLOORS: list[dict[str, Any]] = [
     {"floor": "1", "pfa_x": 0.3, "pfv_x": 30.0, "pfa_y": 0.2, "pfv_y": 45.0},
     {"floor": "2", "record_x": "fast.csv", "record_y": "pulse.csv"},

@@ -29,8 +29,6 @@ from tests.report.parallel import (
 )
 from tests.workbooks import assessed
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
-
 AGAIN, ANCHORED = "run again", "⚓ "
 LABELS = [risk.label for risk in RiskClass]
 DECIDED = {f"{floor}-{kind}{at}" for floor in "12" for kind in "bs" for at, (word, capacity) in enumerate(BRACKETS)

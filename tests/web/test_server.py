@@ -13,6 +13,7 @@ from tests.waiting import PATIENCE, wait_until
 from tests.web.serving import end_late
 from tests.workbooks import write
 
+pytestmark = pytest.mark.slow
 posix = pytest.mark.skipif(os.name == "nt", reason="signals")
 
 
@@ -30,7 +31,6 @@ def _read(path, at):
 
 @posix
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGHUP])
-@pytest.mark.slow
 def test_a_signal_ends_it_after_the_last_edit_is_saved(served, tmp_path, number):
     path = write(tmp_path / "office.xlsx")
     server = served(path)
@@ -41,7 +41,6 @@ def test_a_signal_ends_it_after_the_last_edit_is_saved(served, tmp_path, number)
     assert sorted(one.name for one in tmp_path.iterdir()) == ["home", "office.xlsx", "tmp"]
 
 
-@pytest.mark.slow
 def test_a_file_that_another_program_changed_is_not_overwritten(served, tmp_path):
     path = write(tmp_path / "office.xlsx")
     server = served(path)
@@ -63,7 +62,6 @@ def test_a_file_that_another_program_changed_is_not_overwritten(served, tmp_path
     assert _read(kept, at) == 78
 
 
-@pytest.mark.slow
 def test_a_workbook_that_another_server_has_open_is_told(served, tmp_path):
     path = write(tmp_path / "office.xlsx")
     first = served(path)
@@ -77,7 +75,6 @@ def test_a_workbook_that_another_server_has_open_is_told(served, tmp_path):
     assert served(path).client.get("/api/book").json()["remark"] == ""
 
 
-@pytest.mark.slow
 def test_changes_of_a_held_workbook_that_are_not_downloaded_are_kept_at_the_end(served, tmp_path):
     data = write(tmp_path / "mine.xlsx").read_bytes()
     for is_downloaded in (False, True):
@@ -98,7 +95,6 @@ def test_changes_of_a_held_workbook_that_are_not_downloaded_are_kept_at_the_end(
             kept.unlink()
 
 
-@pytest.mark.slow
 def test_stopping_does_not_wait_for_a_silent_browser_and_a_port_that_is_taken_is_named(served, tmp_path):
     server = served()
     line = socket.create_connection((server.client.host, server.client.port))
@@ -114,7 +110,6 @@ def test_stopping_does_not_wait_for_a_silent_browser_and_a_port_that_is_taken_is
 
 
 @posix
-@pytest.mark.slow
 def test_enter_in_the_terminal_opens_the_page_again(tmp_path):
     import pty
 
@@ -138,7 +133,6 @@ def test_enter_in_the_terminal_opens_the_page_again(tmp_path):
         os.close(follower)
 
 
-@pytest.mark.slow
 def test_saving_is_not_put_off_by_one_edit_after_the_other(served, tmp_path):
     client = served(write(tmp_path / "office.xlsx")).client
     values = iter(range(60, 10**6))

@@ -12,8 +12,6 @@ from tests.workbook.books import Sheet, read
 
 HEADER = ["Detail", "Unit cost", "Source"]
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
-
 
 def test_what_is_wrong_is_an_error_and_a_detail_unknown_or_never_priced_a_warning_at_its_cell(tmp_path):
     rows: Sheet = [["base angle", 4], ["Base angle", 5], [None, 4], ["bracket", 4], ["L-bracket to studs", 5]]

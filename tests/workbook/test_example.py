@@ -68,7 +68,6 @@ def stored(path):
     return [tuple(row[at] for at in places) for row in rows if row[0]]
 
 
-@pytest.mark.filterwarnings("ignore:.*extension is not supported")
 @pytest.mark.slow
 def test_every_use_lacks_nothing_but_shaking_and_its_example_shows_the_results_of_a_run(tmp_path):
     for use, (units, language) in zip(USES, cycle([("si", "it"), ("imperial", "en")])):
@@ -90,7 +89,6 @@ def test_every_use_lacks_nothing_but_shaking_and_its_example_shows_the_results_o
             assert row == tuple(one if isinstance(one, str) else pytest.approx(one, abs=1e-3) for one in values)
 
 
-@pytest.mark.filterwarnings("ignore:.*extension is not supported")
 @pytest.mark.slow
 def test_without_shaking_the_live_columns_tell_the_slenderness(tmp_path):
     path = new(tmp_path, "Hospital", "imperial")

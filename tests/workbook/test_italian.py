@@ -26,8 +26,6 @@ COLUMNS = [column for sheet in SHEETS for column in sheet.columns]
 FLOORS: Rows = [["Piano", "PFA X [g]"], ["1", 0.5]]
 ITEMS: Rows = [["Elemento", "Piano", "Profondità [cm]", "Altezza [cm]"], ["A1", "1", 40, 180]]
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
-
 
 def write(folder: Path, items: Rows = ITEMS, floors: Rows = FLOORS, **others: Rows) -> Path:
     return write_book(folder / "cartella.xlsx", {"Arredi": items, "Piani": floors, **others})

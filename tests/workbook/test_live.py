@@ -29,8 +29,6 @@ from tests.workbook.books import change_parts, read_part
 Live = list[Any]
 Rows = list[dict[str, Any]]
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
-
 AGREEMENT = 1e-9
 POISON = 0.123
 MOST_COLUMNS = 80

@@ -21,7 +21,7 @@ from assess.workbook.template import Units
 from tests.recalculate import evaluate
 from tests.workbook.test_live import Rows, by_formualizer, check, fill, poison
 
-pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*extension is not supported")]
+pytestmark = pytest.mark.slow
 
 UNPLACED = {"floor": "loft"}
 FLOORS: Rows = [*({"floor": str(at), "elevation": z} for at, z in enumerate((-3, 0, 3.5, 7.25, 30))), UNPLACED]

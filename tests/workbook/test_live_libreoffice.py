@@ -22,7 +22,6 @@ from tests.workbook.test_live import ITEMS_AT, POISON, by_formualizer, fill, poi
 pytestmark = [
     pytest.mark.libreoffice,
     needs_libreoffice,
-    pytest.mark.filterwarnings("ignore:.*extension is not supported"),
 ]
 
 Book = Callable[[Path], Path]

@@ -18,8 +18,6 @@ UNITS: tuple[Units, Units] = ("si", "imperial")
 TABLES = [sheet for sheet in SHEETS if sheet.layout == "table"]
 NAMES = [sheet.name for sheet in SHEETS]
 
-pytestmark = pytest.mark.filterwarnings("ignore:.*extension is not supported")
-
 
 @pytest.fixture(scope="module", params=UNITS)
 def units(request: pytest.FixtureRequest) -> Units:
