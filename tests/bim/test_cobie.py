@@ -239,7 +239,7 @@ def test_names_stay_text(tmp_path: Path) -> None:
     assert not [cell.value for cell in cells if cell.data_type == "f" and "HYPERLINK" in str(cell.value)]
 
 
-def test_what_is_taken_of_several_spaces_odd_sizes_other_spellings_and_thin_pieces(tmp_path: Path) -> None:
+def test_what_is_taken_of_several_spaces_odd_sizes_other_spellings_thin_pieces_and_known_types(tmp_path: Path) -> None:
     found = _read(tmp_path, components=({**COMPONENTS[0], "Space": "Site, U01, G01"},))
     assert found.items[0]["floor"] == "Upper"
     assert "1 piece names several spaces; the first that is known was taken." in found.remarks
@@ -249,9 +249,6 @@ def test_what_is_taken_of_several_spaces_odd_sizes_other_spellings_and_thin_piec
         assert len(_read(tmp_path, **one_type(AssetType=typed)).items) == 1
     found = _read(tmp_path, **one_type(NominalWidth=60))
     assert any("Thinner than 10 cm" in text and "Bookcase A" in text for text in found.remarks)
-
-
-def test_a_type_named_as_one_of_the_catalogue_takes_its_place(tmp_path: Path) -> None:
     types = ({**TYPES[0], "Name": "Sideboard"},)
     path = write_cobie(tmp_path / "c.xlsx", types=types, components=({**COMPONENTS[0], "TypeName": "Sideboard"},))
     inventory = read_inventory(build_workbook(read_cobie(path, "COBie.xlsx")), building=SHAKEN)

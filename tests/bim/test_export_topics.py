@@ -274,7 +274,7 @@ def test_all_that_a_topic_selects_is_in_the_picture(tmp_path: Path):
     assert with_door == found.topics.doors
 
 
-def test_topics_have_the_highest_class_of_their_pieces_and_the_upper_class_as_well(simulated, flat, tmp_path, pair):
+def test_topics_have_the_highest_and_the_upper_class_in_the_language_in_use(simulated, flat, tmp_path, pair):
     changed = write_adopted(simulated, tmp_path, {"class": "medium", "class_upper": "high", "probability": 0.2})
     for topic in read_topics(changed, flat).topics:
         assert {"medium", "high"} <= set(topic.labels)
@@ -289,6 +289,8 @@ def test_topics_have_the_highest_class_of_their_pieces_and_the_upper_class_as_we
     assert topic.labels[:4] == ["earthquake", "high", "very high", "2"]
     assert topic.text("Title").startswith("high, could be very high: ")
     assert topic.text("Priority") == "Critical"
+    with speaking(load_catalogue("it")):
+        assert "molto alto" in find(read_topics(simulated, flat), CUPBOARD_1).labels
 
 
 def test_entries_partly_in_the_model_pieces_of_one_source_id_and_doors_of_a_shifted_workbook_are_found(flat, tmp_path):
@@ -310,11 +312,6 @@ def test_entries_partly_in_the_model_pieces_of_one_source_id_and_doors_of_a_shif
     shifted = export_topics(results, flat)
     assert shifted.is_placed
     assert find(Bcf(shifted.data), CUPBOARD_1).selected == [CUPBOARD_1, DOOR_B202]
-
-
-def test_topics_are_in_the_language_in_use(simulated, flat):
-    with speaking(load_catalogue("it")):
-        assert "molto alto" in find(read_topics(simulated, flat), CUPBOARD_1).labels
 
 
 def move(rows: list[dict[str, Any]], by: float) -> list[dict[str, Any]]:

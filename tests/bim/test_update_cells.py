@@ -206,10 +206,29 @@ def test_columns_in_another_order_and_other_units(tmp_path: Path, is_table: bool
     assert (values["E9"], values["E10"], values["I10"]) == ("INV-5", None, 445)
 
 
-def test_a_column_without_a_known_unit_is_left_alone(tmp_path: Path) -> None:
+def test_an_unknown_unit_is_left_alone_and_headings_blank_rows_and_typed_units_are_read(
+    tmp_path: Path,
+) -> None:
     data = resaved(in_own_order(tmp_path / "book.xlsx"), lambda one: one["Items"].__setitem__("I3", "Breadth [stone]"))
     found = update(data, building(items=changed(p3={"breadth": 60.0}).items, places=[], types=[], floors=FLOORS[:0]))
     assert "Items Breadth of the model was left out: its header gives no known unit" in texts(found)
+    # As people fill in: a title, wards as headings, units in cells, a name with stray spaces.
+    head = ["Item", "Floor", "Room", "Breadth [cm]", "Width [cm]", "Height [cm]", "Anchored", "X [m]", "Y [m]"]
+    head += ["Source ID"]
+    rows: list[list[Any]] = [["Furniture of the house, as of May"], [], head, ["GROUND FLOOR"]]
+    for at, one in enumerate(ITEMS):
+        rows += [[], ["UPPER FLOOR"]] if at == 4 else []
+        rows.append([f"W-{at}", f"{one['floor']} ", one["room"], f"{one['breadth']} cm".replace(".", ","), one["width"],
+                     f"{one['height'] / 100:g} m", "N", one["x"], one["y"], f" {one['source_id']}"])  # fmt: skip
+    floors: list[list[Any]] = [["Floor", "Elevation [m]"], ["Level 1", "0,0"], ["Level 2", 3.1]]
+    data = write_book(tmp_path / "book.xlsx", {"Items": rows, "Floors": floors}).read_bytes()
+    model = building(items=[*changed(p2={"height": 80.0}).items, NEW], places=[], types=[], floors=[])
+    found = update(data, model)
+    assert [one for one in texts(found) if "no such column" not in one] == [
+        "Items F6 Height [cm] of W-1: '0.75 m' -> 80",
+        "Items A13 B201-07 was added",
+    ]
+    assert [one.item for one in inventory(found.data).items] == [*(f"W-{at}" for at in range(6)), "B201-07"]
 
 
 @pytest.mark.parametrize("label", [None, "Total"])
@@ -228,23 +247,3 @@ def test_a_table_of_excel_with_a_row_of_totals(tmp_path: Path, label: str | None
     found = update(resaved(in_own_order(tmp_path / "book.xlsx"), total), grown(places=[], types=[]))
     assert "Items B201-07 of the model was left out" in texts(found)
     assert "row 10 is the totals row of a table. Turn the totals row of the table off" in str(found.problems[0])
-
-
-def test_headings_blank_rows_and_typed_units(tmp_path: Path) -> None:
-    """As people fill in: a title, wards as headings, units in cells, a name with stray spaces."""
-    head = ["Item", "Floor", "Room", "Breadth [cm]", "Width [cm]", "Height [cm]", "Anchored", "X [m]", "Y [m]"]
-    head += ["Source ID"]
-    rows: list[list[Any]] = [["Furniture of the house, as of May"], [], head, ["GROUND FLOOR"]]
-    for at, one in enumerate(ITEMS):
-        rows += [[], ["UPPER FLOOR"]] if at == 4 else []
-        rows.append([f"W-{at}", f"{one['floor']} ", one["room"], f"{one['breadth']} cm".replace(".", ","), one["width"],
-                     f"{one['height'] / 100:g} m", "N", one["x"], one["y"], f" {one['source_id']}"])  # fmt: skip
-    floors: list[list[Any]] = [["Floor", "Elevation [m]"], ["Level 1", "0,0"], ["Level 2", 3.1]]
-    data = write_book(tmp_path / "book.xlsx", {"Items": rows, "Floors": floors}).read_bytes()
-    model = building(items=[*changed(p2={"height": 80.0}).items, NEW], places=[], types=[], floors=[])
-    found = update(data, model)
-    assert [one for one in texts(found) if "no such column" not in one] == [
-        "Items F6 Height [cm] of W-1: '0.75 m' -> 80",
-        "Items A13 B201-07 was added",
-    ]
-    assert [one.item for one in inventory(found.data).items] == [*(f"W-{at}" for at in range(6)), "B201-07"]

@@ -24,7 +24,7 @@ DRAWS_EQUATIONS = True
 LINES = [text for method in all_methods() for text in method.equations] + [one.equation for one in PROFILES.values()]
 
 
-def test_tex_indices_and_equations_of_a_line():
+def test_tex_indices_equations_of_a_line_and_their_pictures():
     for plain, tex in (
         ("B/H", r"\dfrac{B}{H}"), ("b/(B/H)", r"\dfrac{b}{B/H}"), ("d/(B/H)²", r"\dfrac{d}{\left(B/H\right)^{2}}"),
         ("f·PFA/(B/H)", r"\dfrac{f\cdot \mathrm{PFA}}{B/H}"), ("a/2/3", r"\dfrac{a}{2 \cdot 3}"),
@@ -65,6 +65,12 @@ def test_tex_indices_and_equations_of_a_line():
         parts = split_line(line)
         assert [one.text for one in parts if one.tex] == equations, (line, equations)
         assert "".join(one.text for one in parts) == line, (line, equations)
+    html = HtmlWriter(for_print=True).words(Equation('Rocking where |a_g|/g > B/H & "so" <on>'))
+    head, picture, rest = re.fullmatch(r"(.*?)<img (.*?)>(.*)", html).groups()
+    assert head == "Rocking where "
+    assert 'alt="|a_g|/g &gt; B/H"' in picture
+    assert picture.startswith('class="math" src="data:image/svg+xml,')
+    assert rest == " &amp; &#34;so&#34; &lt;on&gt;"
 
 
 @pytest.mark.parametrize("code", ["en", "it"])
@@ -97,15 +103,6 @@ def _symbols(text):
         "NFKC", text.replace("½", "12").replace("−", "-").replace("″", "''").replace("′", "'")
     )
     return sorted(one for one in plain if one.isalnum() or one in "=<>≤≥±√'*+-")
-
-
-def test_an_equation_is_a_picture_with_the_plain_text_as_its_alternative():
-    html = HtmlWriter(for_print=True).words(Equation('Rocking where |a_g|/g > B/H & "so" <on>'))
-    head, picture, rest = re.fullmatch(r"(.*?)<img (.*?)>(.*)", html).groups()
-    assert head == "Rocking where "
-    assert 'alt="|a_g|/g &gt; B/H"' in picture
-    assert picture.startswith('class="math" src="data:image/svg+xml,')
-    assert rest == " &amp; &#34;so&#34; &lt;on&gt;"
 
 
 def test_what_is_drawn_is_kept_and_drawn_anew_where_that_is_damaged(monkeypatch, tmp_path):

@@ -125,15 +125,12 @@ def test_an_italian_report_holds_no_english_sentence(assessment):
 
 
 @pytest.mark.slow
-def test_a_logo_is_embedded(tmp_path):
+def test_a_logo_is_embedded_and_a_style_of_the_firms_own_stands_in(tmp_path, assessment):
     for size, shown in (((40, 30), (40, 30)), ((4000, 50), (1334, 17))):
         (tmp_path / "logo.png").write_bytes(picture("PNG", size=size))
         html = render(assessed(tmp_path / "w.xlsx", logo="logo.png", organisation="Us & Co"))
         found = re.search(r'<img class="logo" src="data:image/png;base64,([^"]+)" alt="Logo of Us &amp; Co">', html)
         assert found
         assert struct.unpack(">II", base64.b64decode(found[1])[16:24]) == shown
-
-
-@pytest.mark.slow
-def test_a_style_of_the_firms_own_stands_in(assessment, tmp_path):
-    assert "h1 { color: teal; }" in render(assessment, own(tmp_path, "style/screen.css", "h1 { color: teal; }"))
+    style = "h1 { color: teal; }"
+    assert style in render(assessment, own(tmp_path / "firm", "style/screen.css", style))

@@ -129,7 +129,7 @@ BESIDE = [
 ]
 
 
-def test_segments_are_bands_to_scale_that_go_on_round_a_bend(tmp_path):
+def test_segments_are_bands_that_go_on_round_a_bend_and_names_cover_nothing_where_places_are_many(tmp_path):
     plan, _second = plans_of(_assess(tmp_path / "w.xlsx", BESIDE, CORRIDOR, WAYS))
     ways = {one.name: one for one in plan.ways}
     assert set(ways) == {"<i>aisle</i>", "hall", "gap", "lane"}
@@ -137,22 +137,7 @@ def test_segments_are_bands_to_scale_that_go_on_round_a_bend(tmp_path):
     _near(ways["hall"].corners, [(11.5, -0.6), (11.5, 8.3), (8.5, 8.3), (8.5, -0.6)])
     for one in plan.ways:
         assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in one.corners)
-
-
-CROWD = [
-    {"place": f"{kind or 'point'} {at}", "floor": "1", "x": 1.0 + 2.0 * at, "y": 5.0 + 3.0 * row, "kind": kind}
-    for row, kind in enumerate(("room", "door", ""))
-    for at in range(14)
-]
-DRAFTED = [
-    {"route": "To Exit 1 (draft)", "segment": str(at), "floor": "1", "start": f"room {at}", "end": f"door {at}",
-     "clear_width": 0.9}
-    for at in range(14)
-]  # fmt: skip
-
-
-def test_names_cover_nothing_where_places_are_many(tmp_path):
-    """Points of routes keep their dots without names, and doors that have no room are in no list below the plan."""
+    # Points of routes keep their dots without names, and doors that have no room are in no list below the plan.
     walked = {"route": "Walked", "segment": "x", "floor": "1", "start": "door 0", "end": "point 0"}
     plan = plans_of(_assess(tmp_path / "w.xlsx", PIECES[:3], CROWD, [*DRAFTED, walked]))[0]
     named = {spot.name for spot in plan.places} | {key.name for key in plan.keys}
@@ -165,3 +150,15 @@ def test_names_cover_nothing_where_places_are_many(tmp_path):
     assert not [key for key in plan.keys if key.name.startswith("door")]
     shapes = [bounds(one.corners) for one in plan.pieces]
     assert not [1 for box, shape in itertools.product(plan.boxes, shapes) if overlap(box, shape)]
+
+
+CROWD = [
+    {"place": f"{kind or 'point'} {at}", "floor": "1", "x": 1.0 + 2.0 * at, "y": 5.0 + 3.0 * row, "kind": kind}
+    for row, kind in enumerate(("room", "door", ""))
+    for at in range(14)
+]
+DRAFTED = [
+    {"route": "To Exit 1 (draft)", "segment": str(at), "floor": "1", "start": f"room {at}", "end": f"door {at}",
+     "clear_width": 0.9}
+    for at in range(14)
+]  # fmt: skip

@@ -31,14 +31,11 @@ def find_wrong(text):
     ]
 
 
-def test_outputs_that_are_held_count_one_as_one():
+def test_outputs_that_are_held_and_the_terminal_count_one_as_one(tmp_path, monkeypatch):
     english = [path for path in SHOWN.iterdir() if not re.search("-it|italiano|ospedale", path.name)]
     assert len(english) > 100
     for path in english:
         assert find_wrong(path.read_text(encoding="utf-8")) == [], path.name
-
-
-def test_the_terminal_counts_one_as_one(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = write_routed(tmp_path / "w.xlsx", **ONLY)
     for command, *words in (

@@ -24,15 +24,12 @@ def routed(tmp_path_factory):
     return assess_routed(tmp_path_factory.mktemp("at_risk") / "w.xlsx")
 
 
-def test_a_route_of_which_nothing_is_known_is_not_said_to_be_safe(tmp_path):
+def test_a_route_of_which_nothing_is_known_is_not_safe_and_a_piece_that_reaches_one_is_urgent(tmp_path, routed):
     """No piece of the ground floor is listed, and the lane has no position."""
     results = assess_routed(tmp_path / "w.xlsx", Items=ITEMS[3:])
     assert [one.evaluated for one in results.route_tables.routes] == [True, True, False]
     assert results.route_tables.routes[2].state == RouteState.NOT_KNOWN
     assert [text for text in route.say_routes(results) if "fill in From, To and Floor of Yard: lane" in text]
-
-
-def test_a_piece_that_reaches_a_route_by_the_plan_is_urgent(routed):
     found = {one.item.item: one for one in routed}
     assert (found["tall"].item.route, found["tall"].routes) == ("", ("West",))
     assert {name for name, one in found.items() if one.is_urgent} == {"tall", "calm", "held"}

@@ -116,10 +116,13 @@ def test_the_command_names_what_is_in_the_way_first_and_a_list_leads_out_of_no_f
     assert read_list(tmp_path / "results.json") == {"report.html": "0" * 64, "results.json": None}
 
 
-def test_a_file_of_the_users_that_is_not_in_the_way_stays(tmp_path, results):
+def test_a_file_of_the_users_that_is_not_in_the_way_stays_and_results_of_others_list_nothing(tmp_path, results):
     (tmp_path / "report.pdf").write_text("mine")
     assess.write_reports(results, tmp_path, "csv")
     assert (tmp_path / "report.pdf").read_text() == "mine"
+    for text in ("", "{}", '{"a": 1}', "[]", '{"schema": "1.0"}', '{"schema": "1.0", "assess": {}}', "{" * 5000):
+        (tmp_path / "results.json").write_text(text)
+        assert read_list(tmp_path / "results.json") == {}, text
 
 
 @pytest.mark.slow
@@ -192,12 +195,6 @@ def test_a_folder_without_results_is_unfinished(tmp_path):
     assert "out is unfinished: a run was stopped while it moved its files there" in said
     assert run(*words).exit_code == 0
     assert _names(tmp_path / "out") == ["items.csv", "results.json"]
-
-
-def test_results_of_another_program_list_nothing(tmp_path):
-    for text in ("", "{}", '{"a": 1}', "[]", '{"schema": "1.0"}', '{"schema": "1.0", "assess": {}}', "{" * 5000):
-        (tmp_path / "results.json").write_text(text)
-        assert read_list(tmp_path / "results.json") == {}, text
 
 
 @pytest.mark.slow

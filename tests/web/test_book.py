@@ -184,7 +184,7 @@ def test_cells_that_cannot_be_edited_formulas_in_place_of_values_and_what_is_no_
     assert book.version == 1
 
 
-def test_formulas_merges_arrays_and_a_workbook_that_cannot_be_changed_at_all(tmp_path, filled):
+def test_formulas_merges_arrays_workbooks_that_cannot_be_changed_and_what_is_no_workbook(tmp_path, filled):
     """What a change of the bytes would refuse is refused as it is typed."""
     rows: list[list[Any]] = [["Item", "Floor", "Mine", "Sum"], *([f"A{at}", "1", 1, 2] for at in range(1, 5))]
     path = write_shared(tmp_path / "own.xlsx", {"Items": rows})
@@ -207,6 +207,11 @@ def test_formulas_merges_arrays_and_a_workbook_that_cannot_be_changed_at_all(tmp
     book = Book.open_disk(change_parts(path, {"_xmlsignatures/sig1.xml": b"<a/>"}))
     assert "signature" in refusals(book, ("Items", 2, at("breadth"), 50))["Items", 2, at("breadth")]
     assert book.write() == path.read_bytes()
+    for data in (b"", b"hello", b"PK\x03\x04rest"):
+        with pytest.raises(WorkbookError):
+            Book.hold("x.xlsx", data, tmp_path)
+    with pytest.raises(WorkbookError, match="the sheet is missing"):
+        Book.open_disk(write_shared(tmp_path / "other.xlsx", {"Sheet1": [["a"]]}))
 
 
 def test_hostile_texts_stay_texts(book, tmp_path):
@@ -285,11 +290,3 @@ def test_a_snapshot_stays_as_it_is(book):
         f"{LETTERS['Items', 'breadth']}2"
     ]
     assert [row.number for row in book.snapshot().tables["Items"].rows] == [2, 3, 4, 5, 6]
-
-
-def test_what_is_no_workbook(tmp_path):
-    for data in (b"", b"hello", b"PK\x03\x04rest"):
-        with pytest.raises(WorkbookError):
-            Book.hold("x.xlsx", data, tmp_path)
-    with pytest.raises(WorkbookError, match="the sheet is missing"):
-        Book.open_disk(write_shared(tmp_path / "other.xlsx", {"Sheet1": [["a"]]}))

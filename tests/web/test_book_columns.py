@@ -80,7 +80,7 @@ def test_a_workbook_of_ones_own(tmp_path):
     assert again[2:] == [[7, [None, 900, "blue", "1", "A2", 4, "stray"]], [8, [None, None, None, None, "A3"]]]
 
 
-def test_a_date_in_a_cell(tmp_path):
+def test_a_date_in_a_cell_and_cells_as_json_has_them(tmp_path):
     items = [["Item", "Floor", "When"], ["A1", "1", datetime.date(2024, 5, 1)]]
     form = [["Report date", datetime.date(2024, 6, 1)]]
     rows = {"Items": items, "Building": form}
@@ -96,6 +96,12 @@ def test_a_date_in_a_cell(tmp_path):
     # the cells hold dates again
     assert describe(Book.open_disk(path))[1]["Items"]["rows"] == [[2, ["A1", "1", "2024-05-01"]]]
     assert read_inventory(path, strict=False).building.report_date == "2024-06-01"
+    for value, shown in (
+        (None, None), (UNSAVED, None), (Percent(0.25), 0.25), (datetime.datetime(2024, 5, 1), "2024-05-01"),
+        (datetime.datetime(2024, 5, 1, 12), "2024-05-01T12:00:00"), (datetime.timedelta(hours=30), "1 day, 6:00:00"),
+        (float("inf"), "inf"), (True, True), (0, 0), ("text", "text"),
+    ):  # fmt: skip
+        assert (show(value), type(show(value))) == (shown, type(shown))
 
 
 def test_an_imperial_workbook_round_trips(tmp_path):
@@ -112,12 +118,3 @@ def test_an_imperial_workbook_round_trips(tmp_path):
     again = read_inventory(tmp_path / "book.xlsx", strict=False).items[0]
     assert again.height == pytest.approx(2, rel=1e-5)
     assert again.x == pytest.approx(4 * 0.3048)
-
-
-def test_cells_as_json_has_them():
-    for value, shown in (
-        (None, None), (UNSAVED, None), (Percent(0.25), 0.25), (datetime.datetime(2024, 5, 1), "2024-05-01"),
-        (datetime.datetime(2024, 5, 1, 12), "2024-05-01T12:00:00"), (datetime.timedelta(hours=30), "1 day, 6:00:00"),
-        (float("inf"), "inf"), (True, True), (0, 0), ("text", "text"),
-    ):  # fmt: skip
-        assert (show(value), type(show(value))) == (shown, type(shown))

@@ -59,7 +59,7 @@ def _compare(answer, results):
 
 
 @pytest.mark.slow
-def test_states_are_those_of_the_run(example):
+def test_states_are_those_of_the_run_and_a_piece_with_an_error_leaves_the_routes_to_the_others(example, tmp_path):
     answer = _answer(hold(MARKET))
     _compare(answer, example)
     detail = {one["route"]: one["detail"] for one in answer["routes"]}
@@ -67,10 +67,6 @@ def test_states_are_those_of_the_run(example):
     assert answer["error"] == ""
     places = {one.place: one.row for one in example.places}
     assert all(places[one["room"]] == one["place_row"] for one in answer["rooms"])
-
-
-@pytest.mark.slow
-def test_a_piece_with_an_error_leaves_the_routes_to_the_others(tmp_path):
     book = hold(MARKET)
     edit(book, ("Items", 5, "height", "tall"))
     (tmp_path / "w.xlsx").write_bytes(book.write())
@@ -100,15 +96,12 @@ def test_an_edit_changes_a_state_and_a_faulty_segment_leaves_no_route_open(hall)
     assert "row of the sheet Routes has an error: 4" in route["detail"]
 
 
-def test_routes_on_a_floor_without_shaking_are_not_known(hall):
+def test_routes_on_a_floor_without_shaking_are_not_known_and_without_routes_there_is_nothing_to_say(hall, tmp_path):
     """What is not crossed does not matter."""
     for floor, state in ((3, "blocked"), (2, "not_known")):
         edit(hall, ("Floors", floor, "pfa_x", None), ("Floors", floor, "elevation", None))
         answer = _answer(hall)
         assert {one["state"] for one in answer["routes"]} == {state}
         assert bool(answer["error"]) == (state == "not_known")
-
-
-def test_without_routes_there_is_nothing_to_say(tmp_path):
     answer = _answer(hold(write_template(tmp_path / "w.xlsx", {**HALL, "Routes": [], "Places": []})))
     assert [answer[name] for name in ("routes", "rooms", "segments", "remarks", "problems", "error")] == [[]] * 5 + [""]

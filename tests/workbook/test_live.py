@@ -275,10 +275,15 @@ def unknown_types(path: Path) -> Path:
     return fill(path, items, [{"floor": "1", "pfa_x": 0.5}], {})
 
 
-def test_no_such_type(tmp_path: Path) -> None:
+def test_no_such_type_and_texts_for_numbers_show_no_class_and_a_breadth_up_to_the_width_does(tmp_path: Path) -> None:
     shown = by_formualizer(poison(unknown_types(tmp_path / "book.xlsx")))
     unknown = ["type?", 0.5, *["type?"] * 6]
     assert [shown[row] for row in (2, 3, 4)] == [unknown, ["", 0.5, *[""] * 6], unknown]
+    shown = by_formualizer(poison(texts_for_numbers(tmp_path / "book.xlsx")))
+    assert [shown[row][4:] for row in range(2, 5 * len(TEXTS) + 2)] == [["check"] * 4] * 5 * len(TEXTS)
+    # Beside a width that is blank, no number, or the row's own in place of a narrower type's, Breadth is taken.
+    shown = by_formualizer(poison(breadths_and_widths(tmp_path / "book.xlsx")))
+    assert [shown[row][0] for row in range(2, 7)] == pytest.approx([40 / 180] * 5)
 
 
 UNSERVED: list[tuple[dict[str, Any], dict[str, Any], str | None]] = [
@@ -410,12 +415,17 @@ def stray_names(path: Path) -> Path:
     return fill(path, items, floors, {}, catalogue=catalogue)
 
 
-def test_a_name_is_found_whatever_the_spaces_around_it(tmp_path: Path) -> None:
+def test_a_name_is_found_whatever_the_spaces_around_it_and_its_signs_stand_for_themselves(tmp_path: Path) -> None:
     """Wherever they stand: in Items, in Floors, in the Catalogue. The program finds the same floor and type."""
     path = stray_names(tmp_path / "book.xlsx")
     check(path)
     shown = by_formualizer(path)
     assert [round(shown[row][1], 9) for row in range(2, 2 * len(STRAY) + 2)] == [0.3, 0.5] * len(STRAY)
+    # A star is no wildcard: the floor 12 serves no piece of the floor 1*, and none of 2*, which is no floor.
+    check(floors_of_signs(tmp_path / "book.xlsx", [*SIGNS, "12"]))
+    others = [f"{name}{end}" for name in SIGNS[:5] for end in ("*", "?")]
+    shown = by_formualizer(floors_of_signs(tmp_path / "other.xlsx", others))
+    assert [shown[row][1] for row in range(2, len(others) + 2)] == ["floor?"] * len(others)
 
 
 SIGNS = ["1*", "1?", "~1", "1~*", "*", "?"]
@@ -425,14 +435,6 @@ def floors_of_signs(path: Path, names: Sequence[str]) -> Path:
     """Write a piece for each name of a floor, beside floors that are called by signs, and one called 12."""
     floors = [{"floor": "12", "pfa_x": 0.1}, *({"floor": name, "pfa_x": 0.6} for name in SIGNS)]
     return fill(path, [{"item": name, "floor": name, "breadth": 30, "height": 150} for name in names], floors, {})
-
-
-def test_signs_of_a_name_stand_for_themselves(tmp_path: Path) -> None:
-    """A star is no wildcard: the floor 12 serves no piece of the floor 1*, and none of 2*, which is no floor."""
-    check(floors_of_signs(tmp_path / "book.xlsx", [*SIGNS, "12"]))
-    others = [f"{name}{end}" for name in SIGNS[:5] for end in ("*", "?")]
-    shown = by_formualizer(floors_of_signs(tmp_path / "other.xlsx", others))
-    assert [shown[row][1] for row in range(2, len(others) + 2)] == ["floor?"] * len(others)
 
 
 ANCHORED = [
@@ -499,11 +501,6 @@ def texts_for_numbers(path: Path) -> Path:
     return fill(path, items, floors, {}, catalogue=catalogue)
 
 
-def test_a_text_in_place_of_a_number_shows_no_class(tmp_path: Path) -> None:
-    shown = by_formualizer(poison(texts_for_numbers(tmp_path / "book.xlsx")))
-    assert [shown[row][4:] for row in range(2, 5 * len(TEXTS) + 2)] == [["check"] * 4] * 5 * len(TEXTS)
-
-
 def test_a_number_that_the_program_refuses_shows_no_class(tmp_path: Path) -> None:
     """A date read out of 4/5 is a breadth of 450 m; metres below a header in cm are a needle; 25 of PFA is a percentage."""
     refused: list[tuple[dict[str, Any], dict[str, Any]]] = [
@@ -527,12 +524,6 @@ def breadths_and_widths(path: Path) -> Path:
     items: Rows = [{"item": f"A{at}", "floor": "1", "breadth": 40, "height": 180, **row} for at, row in enumerate(rows)]
     catalogue: Rows = [{"type": "narrow", "breadth": 20, "width": 30, "height": 180}, {"type": "unsized"}]
     return fill(path, items, [{"floor": "1", "pfa_x": 0.5}], {}, "imperial", catalogue=catalogue)
-
-
-def test_a_breadth_up_to_the_width_shows_its_class(tmp_path: Path) -> None:
-    """Beside a width that is blank, no number, or the row's own in place of a narrower type's, Breadth is taken."""
-    shown = by_formualizer(poison(breadths_and_widths(tmp_path / "book.xlsx")))
-    assert [shown[row][0] for row in range(2, 7)] == pytest.approx([40 / 180] * 5)
 
 
 def test_formulas_that_are_copied_down_compute(tmp_path: Path) -> None:

@@ -270,12 +270,6 @@ WRONG: list[tuple[dict[str, Any], str]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("building", "word"), WRONG)
-def test_what_is_wrong_shows_no_class(tmp_path: Path, building: dict[str, Any], word: str) -> None:
-    shown = show(tmp_path, [{"floor": "1", "elevation": 4}, {"floor": "2", "elevation": 8}], **building)
-    assert [one[1:] for one in shown.values()] == [[word] * 7] * 2
-
-
 WRONG_FOR_TYPED: list[tuple[dict[str, Any], str]] = [
     ({"ground_pga": 0.2, "ground_pgv": "fast"}, "check"), ({"ground_pga": "much", "ground_pgv": 30}, "check"),
     ({"period": "short"}, "check"), ({"height": 0}, "check"), ({"structure": "steel thing"}, "check"),
@@ -283,14 +277,17 @@ WRONG_FOR_TYPED: list[tuple[dict[str, Any], str]] = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("building", "word"), WRONG_FOR_TYPED)
-def test_what_is_wrong_shows_no_class_of_a_typed_pfa(tmp_path: Path, building: dict[str, Any], word: str) -> None:
-    """With PFV typed too, nothing is needed of the building nor of the ground."""
+def test_what_is_wrong_shows_no_class(tmp_path: Path) -> None:
+    """With PFA and PFV typed, nothing is needed of the building nor of the ground."""
+    for building, word in WRONG:
+        shown = show(tmp_path, [{"floor": "1", "elevation": 4}, {"floor": "2", "elevation": 8}], **building)
+        assert [one[1:] for one in shown.values()] == [[word] * 7] * 2, building
     floors: Rows = [{"floor": "1", "elevation": 4, "pfa_x": 0.3}, {"floor": "2", "elevation": 8, "pfa_x": 0.3,
                     "pfv_x": 30}]  # fmt: skip
-    shown = show(tmp_path, floors, **building)
-    assert shown["1"][1:] == [word] * 7
-    assert shown["2"][1] == 0.3
+    for building, word in WRONG_FOR_TYPED:
+        shown = show(tmp_path, floors, **building)
+        assert shown["1"][1:] == [word] * 7, building
+        assert shown["2"][1] == 0.3, building
 
 
 @pytest.mark.parametrize("ground", [{"ground_pga": 0.2}, {"shaking": "MMI VI, strong"}])
