@@ -29,7 +29,7 @@ def test_doors_of_published_models(large, duplex):
     assert find_ground(duplex).name == "Level 1"
 
 
-def test_each_side_has_a_space_or_none_and_a_leaf_at_one_face_of_a_thick_wall_joins_both_rooms():
+def test_each_side_of_a_door_has_a_space_or_none_also_in_thick_walls_and_large_spaces():
     for at, kind, sides in (
         ((4.05, 2.0, 0.0), "inside", ("b", "a")), ((4.05, 2.0, 180.0), "inside", ("a", "b")),
         ((-0.05, 2.0, 0.0), "exit", ("a", "")), ((-0.05, 2.0, 180.0), "exit", ("", "a")),
@@ -43,10 +43,7 @@ def test_each_side_has_a_space_or_none_and_a_leaf_at_one_face_of_a_thick_wall_jo
         found = model(leaf, spaces=(room("a", 0, 0, 4, 4), room("b", 5, 0, 9, 4)))
         walled = replace(found, walls={"0": (rectangle(4, -1, 5, 5),)})
         assert (find_sides(walled), find_kinds(walled, find_sides(walled))) == ({"d": ("b", "a")}, {"d": "inside"}), x
-
-
-def test_which_spaces_walls_and_storeys_count_at_a_door():
-    """Some programs export a whole storey as a space, too."""
+    # Some programs export a whole storey as a space, too.
     leaf, a, b = door("d", 4.05, 2.0, 0.0), room("a", 0, 0, 4, 4), room("b", 4.1, 0, 8, 4)
     assert find_sides(model(leaf, spaces=(room("zone", -1, -1, 9, 5), a, b))) == {"d": ("b", "a")}
     found = model(leaf, spaces=(a, replace(b, storey="1")), elevations=(0.0, 3.0))

@@ -146,7 +146,7 @@ def test_a_door_has_the_sizes_of_its_opening_else_of_its_leaf(tmp_path, deep):
     assert abs(door.normal_deg) == pytest.approx(90)
 
 
-def test_a_model_far_from_its_origin_is_brought_near_and_true_north_tells_the_direction_of_x(tmp_path):
+def test_models_far_from_their_origin_without_rooms_or_storeys_and_of_no_use_at_all(tmp_path):
     model = ModelWriter(north=(-1.0, 0.0))
     storey = model.storey()
     room = model.space(storey, (412_003, 5_654_002, 0, 6, 4, 3))
@@ -159,9 +159,45 @@ def test_a_model_far_from_its_origin_is_brought_near_and_true_north_tells_the_di
     assert min(x for x, _ in found.spaces[0].area[0]) == pytest.approx(0, abs=1e-3)
     assert any("stands far from its origin" in text for text in found.remarks)
     assert found.azimuth_deg == pytest.approx(180), "true north along -X: X points south"
+    model = ModelWriter()
+    storey = model.storey("Level 3", 6.0)
+    model.piece("Shelf", SHELF, within=storey, at=(2, 1, 6.0))
+    found = read(model, tmp_path)
+    assert (len(found.pieces), found.pieces[0].space) == (1, "")
+    assert [str(text) for text in found.remarks] == [
+        "The model has no rooms (IfcSpace): Room stays blank, and heights are taken from the storeys."
+    ]
+    model = ModelWriter()
+    room = model.space(model.building, (3, 2, 0, 6, 4, 3))
+    model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
+    found = read(model, tmp_path)
+    assert [(one.key, one.name) for one in found.storeys] == [("", "1")]
+    assert (len(found.pieces), len(found.spaces)) == (1, 1)
+    assert [str(text) for text in found.warnings] == [
+        "The model has no storeys: all of it was put on one floor, 1. Check Floor in Items."
+    ]
+    for message in ("has no unit of length", "holds neither storeys nor rooms, furniture or walls with a shape"):
+        model = ModelWriter(units=None if "unit" in message else "METRE")
+        with pytest.raises(ModelError, match=f"a.ifc {message}"):
+            read(model, tmp_path)
 
 
-def test_what_is_no_piece_or_has_no_sensible_size_is_left_out_with_the_reason(tmp_path):
+def test_types_are_named_as_programs_show_them_and_what_is_no_piece_is_left_out_with_the_reason(tmp_path):
+    model, _, room = one_room("IFC2X3")
+    fridge = model.element("IfcFlowTerminal", "Fridge:1", SHELF, within=room, at=(2, 1, 0))
+    model.element("IfcFlowTerminal", "Mirror", SHELF, within=room, at=(3, 1, 0))
+    model.typed("IfcElectricApplianceType", "Fridge", fridge)
+    found = read(model, tmp_path)
+    assert [one.name for one in found.pieces] == ["Fridge:1"]
+    assert [one.type for one in found.skipped] == ["IfcFlowTerminal Mirror"]
+    model, _, room = one_room()
+    plain = model.piece("Stuhl-017", SHELF, within=room, at=(1, 1, 0))
+    model.typed("IfcFurnitureType", "Stuhl 4", plain)
+    model.piece("M_Desk:1525 x 762mm:355965", SHELF, within=room, at=(2, 1, 0), Tag="355965")
+    model.piece("M_Bed:Queen:Queen:99", SHELF, within=room, at=(3, 1, 0))
+    model.piece("  Two\n lines ", SHELF, within=room, at=(4, 1, 0))
+    found = read(model, tmp_path)
+    assert {one.type for one in found.pieces} == {"Stuhl 4", "M_Desk 1525 x 762mm", "M_Bed Queen", "Two lines"}
     model, storey, room = one_room()
     model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
     model.piece("Wall unit", SHELF, within=room, at=(3, 1, 1.2))
@@ -184,24 +220,6 @@ def test_what_is_no_piece_or_has_no_sensible_size_is_left_out_with_the_reason(tm
     assert all(math.isfinite(one.x + one.y + one.breadth + one.width + one.height) for one in found.pieces)
 
 
-def test_types_are_named_as_programs_show_them_and_tell_an_appliance_in_ifc2x3(tmp_path):
-    model, _, room = one_room("IFC2X3")
-    fridge = model.element("IfcFlowTerminal", "Fridge:1", SHELF, within=room, at=(2, 1, 0))
-    model.element("IfcFlowTerminal", "Mirror", SHELF, within=room, at=(3, 1, 0))
-    model.typed("IfcElectricApplianceType", "Fridge", fridge)
-    found = read(model, tmp_path)
-    assert [one.name for one in found.pieces] == ["Fridge:1"]
-    assert [one.type for one in found.skipped] == ["IfcFlowTerminal Mirror"]
-    model, _, room = one_room()
-    plain = model.piece("Stuhl-017", SHELF, within=room, at=(1, 1, 0))
-    model.typed("IfcFurnitureType", "Stuhl 4", plain)
-    model.piece("M_Desk:1525 x 762mm:355965", SHELF, within=room, at=(2, 1, 0), Tag="355965")
-    model.piece("M_Bed:Queen:Queen:99", SHELF, within=room, at=(3, 1, 0))
-    model.piece("  Two\n lines ", SHELF, within=room, at=(4, 1, 0))
-    found = read(model, tmp_path)
-    assert {one.type for one in found.pieces} == {"Stuhl 4", "M_Desk 1525 x 762mm", "M_Bed Queen", "Two lines"}
-
-
 def test_a_raised_floor_of_a_room_counts_and_a_piece_of_no_storey_stands_on_the_next_below(tmp_path):
     """A platform 60 cm above the storey: what stands on it stands on the floor."""
     model = ModelWriter()
@@ -212,30 +230,6 @@ def test_a_raised_floor_of_a_room_counts_and_a_piece_of_no_storey_stands_on_the_
     found = {one.name: one for one in read(model, tmp_path).pieces}
     assert found["Shelf"].bottom == pytest.approx(0, abs=1e-6)
     assert (found["Outside"].storey, found["Outside"].space) == (upper.GlobalId, "")
-
-
-def test_models_without_rooms_or_storeys_and_those_that_cannot_be_used_at_all(tmp_path):
-    model = ModelWriter()
-    storey = model.storey("Level 3", 6.0)
-    model.piece("Shelf", SHELF, within=storey, at=(2, 1, 6.0))
-    found = read(model, tmp_path)
-    assert (len(found.pieces), found.pieces[0].space) == (1, "")
-    assert [str(text) for text in found.remarks] == [
-        "The model has no rooms (IfcSpace): Room stays blank, and heights are taken from the storeys."
-    ]
-    model = ModelWriter()
-    room = model.space(model.building, (3, 2, 0, 6, 4, 3))
-    model.piece("Shelf", SHELF, within=room, at=(2, 1, 0))
-    found = read(model, tmp_path)
-    assert [(one.key, one.name) for one in found.storeys] == [("", "1")]
-    assert (len(found.pieces), len(found.spaces)) == (1, 1)
-    assert [str(text) for text in found.warnings] == [
-        "The model has no storeys: all of it was put on one floor, 1. Check Floor in Items."
-    ]
-    for message in ("has no unit of length", "holds neither storeys nor rooms, furniture or walls with a shape"):
-        model = ModelWriter(units=None if "unit" in message else "METRE")
-        with pytest.raises(ModelError, match=f"a.ifc {message}"):
-            read(model, tmp_path)
 
 
 def test_elevations_placements_and_furniture_tell_where_the_floor_of_a_storey_is(tmp_path):

@@ -62,7 +62,7 @@ def test_breadth_is_the_shortest_distance_between_outer_supports_of_which_those_
         )
 
 
-def test_pieces_that_cannot_be_taken_are_left_out_with_the_reason():
+def test_pieces_that_cannot_be_taken_are_left_out_and_others_told_apart_by_their_names():
     beside = replace(PIECE, key="r", type="Easel", support_reach=0.0)
     tall = replace(PIECE, key="q", type="Mast", height=9.0)
     thin = replace(PIECE, key="t", type="Leg", support_breadth=0.02)
@@ -73,9 +73,6 @@ def test_pieces_that_cannot_be_taken_are_left_out_with_the_reason():
         ("Mast", "a size outside 5 to 600 cm"), ("Leg", "a size outside 5 to 600 cm"),
     }  # fmt: skip
     assert not found.is_complete
-
-
-def test_items_rooms_and_types_are_told_apart_by_their_names():
     pieces = tuple(replace(PIECE, key=f"p{n}", x=float(n)) for n in range(3))
     found = list_building(model(pieces=(*pieces, replace(PIECE, key="q", space=""))))
     assert [(row["item"], row.get("room")) for row in found.items] == [

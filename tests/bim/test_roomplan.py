@@ -30,7 +30,7 @@ def pieces_of(model):
     return {one.key: one for one in model.pieces}
 
 
-def test_pieces_have_sizes_positions_and_directions():
+def test_pieces_have_sizes_positions_and_directions_also_in_files_of_ios_16():
     model = read(office())
     assert (model.source, model.schema, model.sizes_from) == (NAME, "RoomPlan", "scan")
     assert [one.type for one in model.pieces] == ["Storage", "Storage", "Table", "Chair"]
@@ -43,9 +43,6 @@ def test_pieces_have_sizes_positions_and_directions():
     assert pieces_of(model)[identify("chair")].angle_deg in (pytest.approx(30), pytest.approx(-60)), "it is square"
     assert [one.bottom for one in model.pieces] == pytest.approx([0] * len(model.pieces), abs=1e-9)
     assert {one.space for one in model.pieces} == {identify("floor")}
-
-
-def test_texts_for_categories_lists_of_columns_and_a_file_of_ios_16_mean_the_same():
     other = office()
     for kind in ("objects", "walls", "doors", "windows", "floors"):
         for one in other[kind]:
@@ -189,7 +186,7 @@ def structure():
     return merged
 
 
-def test_a_structure_has_storeys_and_named_rooms_and_rooms_not_merged_are_taken_with_a_warning():
+def test_a_structure_has_storeys_and_named_rooms_and_becomes_a_workbook_that_is_read(tmp_path):
     model = read(structure())
     assert [(one.key, one.name, one.elevation) for one in model.storeys] == [
         ("0", "Storey 0", 0), ("1", "Storey 1", pytest.approx(2.8)),
@@ -209,9 +206,6 @@ def test_a_structure_has_storeys_and_named_rooms_and_rooms_not_merged_are_taken_
     assert len(listed.pieces) == 8
     assert any("The 2 rooms were scanned one by one" in str(one) for one in listed.warnings)
     assert not any("one by one" in str(one) for one in read(structure()).warnings)
-
-
-def test_a_scan_becomes_a_workbook_that_is_read_and_the_reader_of_files_knows_it(tmp_path):
     found = list_building(read(structure()))
     assert {row["sizes_from"] for row in found.items} == {"scan"}
     assert [row["floor"] for row in found.floors] == ["Storey 0", "Storey 1"]

@@ -288,21 +288,6 @@ NEW_ON_2 = piece(7, "Level 2", "B201 Office")
 RENAMED = "it seems to have been renamed"
 
 
-def test_what_people_renamed_keeps_its_name_for_new_pieces_too(book: bytes) -> None:
-    data = renamed(book, {"Level 1": "EG", "A102 Office": "Archive", "Exit A101": "Main entrance"})
-    found = update(data, building(items=[*changed(p3={"breadth": 60.0}).items, piece(7, "Level 1", "A102 Office")]))
-    assert texts(found) == [
-        f"Floors A2 Floor of EG stays 'EG'; the model has 'Level 1': {RENAMED}",
-        f"Items {address('room', 4)} Room of A102-03 stays 'Archive'; the model has 'A102 Office': {RENAMED}",
-        f"Items {address('breadth', 4)} Breadth [cm] of A102-03: 54.5 -> 60",
-        "Items A8 A102-07 was added",
-        f"Places A4 Place of Main entrance stays 'Main entrance'; the model has 'Exit A101': {RENAMED}",
-    ]
-    added = inventory(found.data).items[-1]
-    assert (added.floor, added.room) == ("EG", "Archive")
-    assert faults(found.data) == []
-
-
 @pytest.mark.slow
 def test_floors_that_were_renumbered_are_not_mixed_up() -> None:
     """People call 0 and 1 what the model calls 1 and 2: pieces stay, new ones go to the floor that is meant."""
@@ -322,7 +307,7 @@ def test_floors_that_were_renumbered_are_not_mixed_up() -> None:
     assert kinds(update(data, anew)) == ["kept", "kept"], "names that the model gives anew"
 
 
-def test_floors_are_added_their_plans_replaced_and_elevations_that_people_corrected_stay(book: bytes) -> None:
+def test_floors_are_added_their_plans_replaced_and_what_people_corrected_or_renamed_stays(book: bytes) -> None:
     floor = {"floor": "Level 3", "elevation": 6.2, "plan": "house-Level-3.svg", "plan_left": 0.0}
     found = update(book, building(floors=[*FLOORS, floor], items=[*ITEMS, piece(7, "Level 3", "C301")]))
     assert texts(found) == ["Floors A4 Level 3 was added", "Items A8 C301-07 was added"]
@@ -347,6 +332,18 @@ def test_floors_are_added_their_plans_replaced_and_elevations_that_people_correc
     model = building(floors=[*FLOORS, {"floor": "Level 3", "elevation": 6.2}])
     with pytest.raises(WorkbookError, match="Floors!A6: 1 new row of the model was not added: row 6, the last"):
         update_workbook(data, model, "house.xlsx")
+    data = renamed(book, {"Level 1": "EG", "A102 Office": "Archive", "Exit A101": "Main entrance"})
+    found = update(data, building(items=[*changed(p3={"breadth": 60.0}).items, piece(7, "Level 1", "A102 Office")]))
+    assert texts(found) == [
+        f"Floors A2 Floor of EG stays 'EG'; the model has 'Level 1': {RENAMED}",
+        f"Items {address('room', 4)} Room of A102-03 stays 'Archive'; the model has 'A102 Office': {RENAMED}",
+        f"Items {address('breadth', 4)} Breadth [cm] of A102-03: 54.5 -> 60",
+        "Items A8 A102-07 was added",
+        f"Places A4 Place of Main entrance stays 'Main entrance'; the model has 'Exit A101': {RENAMED}",
+    ]
+    piece_added = inventory(found.data).items[-1]
+    assert (piece_added.floor, piece_added.room) == ("EG", "Archive")
+    assert faults(found.data) == []
 
 
 # ---------------------------------------------------------------- rooms and types

@@ -48,7 +48,7 @@ def read_function(element):
     return lambda x: np.where(np.asarray(x) <= low, 0, lognormal_chance(np.minimum(x, high), median, beta))
 
 
-def test_each_floor_has_the_chances_of_its_amplification(small):
+def test_each_floor_has_the_chances_of_its_amplification_at_any_strength_under_names_of_its_own(small):
     """PFA over ground PGA is 0.3 / 0.25 on floor 1, along the stronger axis, and 0.5 / 0.25 on floor 2."""
     assessment, found = small
     found = shape_curves(found, ("Shelf", RISING), ("Uneven", UNEVEN))
@@ -64,10 +64,7 @@ def test_each_floor_has_the_chances_of_its_amplification(small):
         assert f"Shelf|{floor}: Shelf on floor {floor}, PFA / ground PGA {amplification:g}." in description
     for words in ("Ground PGA 0.25 g", "its uncertainty is not in beta", "for this building only", "For screening"):
         assert words in description
-
-
-def test_a_stronger_earthquake_changes_no_chance_tables_that_end_early_are_left_out_and_names_are_unique(small):
-    """The ground grows with the floors, so that the ratio stays."""
+    # The ground grows with the floors, so that the ratio stays.
     assessment, found = small
     twice = assess_small(scale=2.0)
     rising = ("Shelf", RISING)

@@ -39,7 +39,7 @@ def test_medians_and_betas_are_those_found(im, demand, unit, size):
         assert row["ID"].endswith(f".{im}")
 
 
-def test_identifiers_are_safe_and_unique_and_nothing_is_written_where_there_is_no_lognormal(small):
+def test_identifiers_are_safe_and_unique_and_what_it_is_of_stands_in_the_metadata(small):
     """A name that reads as a formula, as markup or in another script; alike but for case; alike after shortening."""
     assessment, found = small
     names = ["=1+2", "<b>Böse & 'Co'</b>", "書架", "shelf a", "Shelf-A", "Shelf A 2", "x" * 99, "x" * 98, "書"]
@@ -53,9 +53,6 @@ def test_identifiers_are_safe_and_unique_and_nothing_is_written_where_there_is_n
         InputError, match=r"formats: none of the 1 curves can be written for pelicun. The first is U: no"
     ):
         write_pelicun(assessment, shape_curves(found, ("U", UNEVEN)))
-
-
-def test_what_it_is_of_stands_in_the_metadata(small):
     assessment, found = small
     found = shape_curves(found, ("Shelf", RISING), ("Uneven", UNEVEN), ("Still", (0.0, 0.0)))
     rows, about = read(write_pelicun(assessment, found))

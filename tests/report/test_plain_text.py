@@ -60,7 +60,7 @@ def outputs(tmp_path_factory):
         return results, assess.write_reports(results, folder / "out", ("xlsx", "html", "json", "csv", "docx"))
 
 
-def test_the_inventory_is_cleaned_and_says_so_and_json_and_csv_have_its_texts(outputs):
+def test_the_inventory_is_cleaned_and_says_so_and_json_csv_html_and_word_have_its_texts(outputs):
     results, _ = outputs
     texts = [one.item.notes for one in results]
     assert texts[:4] == [FORMULA, SCRIPT, PATH, LONG.strip()]
@@ -80,6 +80,32 @@ def test_the_inventory_is_cleaned_and_says_so_and_json_and_csv_have_its_texts(ou
         assert rows[0][name] == "'" + FORMULA
         assert rows[1][name] == SCRIPT
         assert rows[3][name] == LONG.strip()
+    _, written = outputs
+    text = written["html"].read_text(encoding="utf-8")
+    tags = _Tags()
+    tags.feed(text)
+    assert (tags.wrong, tags.open) == ([], [])
+    assert text.lower().count("<script") == 1
+    (script,) = re.findall(r"<script>(.*?)</script>", text, flags=re.DOTALL)
+    assert f"script-src '{hash_script(script)}'" in text
+    assert "default-src 'none'" in text
+    assert "url(" not in re.sub(r"url\((data:|#)", "", text)
+    assert not re.search(r"(?:href|src)=\"(?!data:|#)", text)
+    assert all('scope="' in head for head in re.findall(r"<th[ >][^>]*", text))
+    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in text
+    assert "=HYPERLINK(&#34;http://x&#34;,&#34;y&#34;)" in text
+    assert PATH in text
+    assert _no_hidden(text)
+    _, written = outputs
+    texts = [
+        cell.text for table in docx.Document(str(written["docx"])).tables for row in table.rows for cell in row.cells
+    ]
+    shown = " ".join(" ".join(texts).split())
+    assert SCRIPT in shown
+    assert FORMULA in shown
+    texts = [data.decode() for name, data in parts_of(written["docx"]).items() if name.endswith((".xml", ".rels"))]
+    assert not any('TargetMode="External"' in text for text in texts)
+    assert all(_no_hidden(text) for text in texts)
 
 
 def _no_hidden(text):
@@ -125,35 +151,6 @@ class _Tags(HTMLParser):
     def handle_endtag(self, tag):
         if not self.open or self.open.pop() != tag:
             self.wrong.append(tag)
-
-
-def test_html_and_word(outputs):
-    _, written = outputs
-    text = written["html"].read_text(encoding="utf-8")
-    tags = _Tags()
-    tags.feed(text)
-    assert (tags.wrong, tags.open) == ([], [])
-    assert text.lower().count("<script") == 1
-    (script,) = re.findall(r"<script>(.*?)</script>", text, flags=re.DOTALL)
-    assert f"script-src '{hash_script(script)}'" in text
-    assert "default-src 'none'" in text
-    assert "url(" not in re.sub(r"url\((data:|#)", "", text)
-    assert not re.search(r"(?:href|src)=\"(?!data:|#)", text)
-    assert all('scope="' in head for head in re.findall(r"<th[ >][^>]*", text))
-    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in text
-    assert "=HYPERLINK(&#34;http://x&#34;,&#34;y&#34;)" in text
-    assert PATH in text
-    assert _no_hidden(text)
-    _, written = outputs
-    texts = [
-        cell.text for table in docx.Document(str(written["docx"])).tables for row in table.rows for cell in row.cells
-    ]
-    shown = " ".join(" ".join(texts).split())
-    assert SCRIPT in shown
-    assert FORMULA in shown
-    texts = [data.decode() for name, data in parts_of(written["docx"]).items() if name.endswith((".xml", ".rels"))]
-    assert not any('TargetMode="External"' in text for text in texts)
-    assert all(_no_hidden(text) for text in texts)
 
 
 @pytest.mark.slow

@@ -26,7 +26,7 @@ def recorded(tmp_path_factory):
     return assess.run(assess.read_inventory(path), Settings(verify="all", runs=20), jobs=1)
 
 
-def test_the_stopping_rule_names_the_undecided(recorded):
+def test_the_stopping_rule_names_the_undecided_and_a_large_misfit_is_reported(recorded):
     some, table = recorded, recorded.cases_table
     found = table.outcomes[some.simulation.key]
     undecided = {**found.flags, "undecided": np.arange(len(table)) == 0}
@@ -44,8 +44,6 @@ def test_the_stopping_rule_names_the_undecided(recorded):
     assert "No piece is left undecided." in " ".join(describe_trials(decided.verified))
     assert "125 to 5,000 motions each" in decided.verified.sentence
 
-
-def test_a_large_misfit_is_reported(recorded):
     def worsen(motion):
         if motion.ensemble is None:
             return motion

@@ -34,7 +34,7 @@ def _report(folder, *args, **named):
     return folder / "r.xlsx"
 
 
-def test_every_sheet_is_set_up_for_print_and_a_title_cannot_change_the_header(tmp_path):
+def test_every_sheet_is_set_up_for_print_and_items_show_bars_colours_and_choices(tmp_path):
     book = openpyxl.load_workbook(_report(tmp_path, building="575 Market & Sons"))
     assert book.sheetnames == NAMES
     for sheet in book:
@@ -55,9 +55,6 @@ def test_every_sheet_is_set_up_for_print_and_a_title_cannot_change_the_header(tm
     header = unescape(re.findall("<oddHeader>(.*?)</oddHeader>", text)[0])
     assert re.fullmatch(r"&L&8 &&P 9 &&Rlong (long )+.*…&R&8 Items", header)
     assert len(header) < 120
-
-
-def test_items_show_bars_colours_and_choices(tmp_path):
     sheet = openpyxl.load_workbook(_report(tmp_path))["Items"]
     rules = [rule.type for area in sheet.conditional_formatting for rule in area.rules]
     assert rules.count("dataBar") == 5

@@ -173,7 +173,7 @@ def test_an_edited_row_alone_is_to_be_run_again(report):
     assert any(line.startswith(f"Rows to be run again, as an input was edited: {len(edited)}.") for line in lines)
 
 
-def test_an_edit_taken_back_counts_again_and_an_edited_quantity_or_anchor_at_once(report):
+def test_an_edit_taken_back_counts_again_and_an_edited_peak_asks_for_a_run_of_the_rows_that_shake_along_it(report):
     sheet = openpyxl.load_workbook(report.path)["Items"]
     places = [report.cell("2-11", label) for label in ("Breadth [cm]", "Friction", "Axis given")]
     edits = [(place, 0.25) for place in places]
@@ -185,9 +185,6 @@ def test_an_edit_taken_back_counts_again_and_an_edited_quantity_or_anchor_at_onc
     assert not report.again(book)
     assert _summary(report, book) == _expected(report, set(), items) != _expected(report)
     assert report.read(book, "Class")["1-4"].startswith(ANCHORED)
-
-
-def test_an_edited_peak_or_velocity_or_a_borrowed_one_asks_for_a_run_of_the_rows_that_shake_along_it(report):
     x, y = ("Floors", 3, 3), ("Floors", 3, 6)
     assert report.again(report.edit((x, 0.9))) == report.named("2", "", "X")
     assert report.again(report.edit((y, 0.9))) == report.named("2", "", "Y")

@@ -228,13 +228,6 @@ def _begin(tmp_path, slots, data=b"x"):
     return Import(folder, "duplex.ifc", "none", slots)
 
 
-def test_a_reading_for_which_nobody_asks_ends(tmp_path, monkeypatch):
-    monkeypatch.setattr(importing, "LEFT_AFTER", -1.0)
-    found = _begin(tmp_path, Slots(1), DUPLEX.read_bytes())
-    wait_until(lambda: found.state, lambda state: state != "running")
-    assert (found.state, list(tmp_path.iterdir())) == ("cancelled", [])
-
-
 def test_plans_workbooks_and_models_get_names_that_nothing_else_has(tmp_path):
     """Storeys "EG" and "EG 2": the second name of the first plan is that of the second plan."""
     (tmp_path / "a.svg").write_bytes(b"mine")
@@ -262,9 +255,13 @@ def test_plans_workbooks_and_models_get_names_that_nothing_else_has(tmp_path):
     assert clean_name("..") == ""
 
 
-def test_without_a_place_nothing_is_kept(tmp_path):
+def test_without_a_place_nothing_is_kept_and_a_reading_for_which_nobody_asks_ends(tmp_path, monkeypatch):
     slots = Slots(1, READING)
     slots.take()
     with pytest.raises(RequestError, match="Other building models are being read"):
         _begin(tmp_path, slots)
     assert list(tmp_path.iterdir()) == []
+    monkeypatch.setattr(importing, "LEFT_AFTER", -1.0)
+    found = _begin(tmp_path, Slots(1), DUPLEX.read_bytes())
+    wait_until(lambda: found.state, lambda state: state != "running")
+    assert (found.state, list(tmp_path.iterdir())) == ("cancelled", [])

@@ -88,7 +88,7 @@ def _visit(user, cookie=""):
     return HTTPConnection({"type": "http", "path": "/", "query_string": b"", "headers": headers})
 
 
-def test_a_name_that_comes_twice_is_not_the_proxys_and_sessions_are_limited(make):
+def test_a_name_that_comes_twice_is_not_the_proxys_and_sessions_and_their_files_are_limited(make, tmp_path):
     """A proxy that adds its header to the one of the browser lets that one name anybody."""
     keys = Keys("X-User", 80, make)
     assert keys.admit(_visit(("ann", "ben"))) is None
@@ -107,9 +107,6 @@ def test_a_name_that_comes_twice_is_not_the_proxys_and_sessions_are_limited(make
     assert not ann.folder.exists()
     assert keys.find(_visit("ann", ann.key)) is None
     assert keys.admit(_visit("cat")) is not None
-
-
-def test_files_of_a_session_are_limited(make, tmp_path):
     data = write(tmp_path / "w.xlsx").read_bytes()
     session = make(Limits(bytes=3 * len(data)))
     session.hold("w.xlsx", data)

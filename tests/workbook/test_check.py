@@ -88,7 +88,7 @@ HEADLESS = "no header row was found in the first 20 rows. It needs the headers:"
 START = "Add it, or start from a workbook made with `assess new`."
 
 
-def test_sheets_that_are_missing_or_empty(tmp_path: Path) -> None:
+def test_sheets_columns_and_cells_that_are_missing_or_cannot_be_read_are_reported_once(tmp_path: Path) -> None:
     for sheets, errors in (
         ({"Notes": [["hello"]]}, {f"Items: the sheet is missing. {START}", f"Floors: the sheet is missing. {START}"}),
         ({"Items": [*ITEMS, ["A2", "2", 40, 180]], "Places": [["Place", "Floor"]]},
@@ -106,18 +106,6 @@ def test_sheets_that_are_missing_or_empty(tmp_path: Path) -> None:
                                     (("Items", "Floors", "Route"), "Route", "Routes"))),
     ):  # fmt: skip
         assert errors_of(write_book(tmp_path / "book.xlsx", sheets)) == errors, (sheets, errors)
-
-
-REQUIRED: list[tuple[str, list[Any], list[Any], list[str]]] = [
-    ("Items", ["Floor", "Breadth [cm]", "Height [cm]"], ["1", 40, 180], ["Item"]),
-    ("Items", ["Breadth [cm]", "Height [cm]"], [40, 180], ["Item", "Floor"]),
-    ("Floors", ["PFA X [g]"], [0.5], ["Floor"]), ("Catalogue", ["Source", "Breadth [cm]"], ["here", 40], ["Type"]),
-    ("Places", ["Floor", "X [m]"], ["1", 2], ["Place"]), ("Places", ["Place", "X [m]"], ["Lift", 2], ["Floor"]),
-    ("Routes", ["Segment", "Floor"], ["S1", "1"], ["Route"]), ("Routes", ["Route", "Floor"], ["R1", "1"], ["Segment"]),
-]  # fmt: skip
-
-
-def test_a_column_or_cell_that_is_missing_or_cannot_be_read_is_reported_once(tmp_path: Path) -> None:
     for sheet, header, values, missing in REQUIRED:
         path = write_book(tmp_path / "book.xlsx", {"Items": ITEMS, "Floors": FLOORS, sheet: [header, values]})
         assert errors_of(path) == {
@@ -136,3 +124,12 @@ def test_a_column_or_cell_that_is_missing_or_cannot_be_read_is_reported_once(tmp
         "Items!C2: Breadth is the text 'wide', expected a number [cm]. Type the number alone.",
         "Floors!B2: PFA X is the text 'strong', expected a number [g]. Type the number alone.",
     }
+
+
+REQUIRED: list[tuple[str, list[Any], list[Any], list[str]]] = [
+    ("Items", ["Floor", "Breadth [cm]", "Height [cm]"], ["1", 40, 180], ["Item"]),
+    ("Items", ["Breadth [cm]", "Height [cm]"], [40, 180], ["Item", "Floor"]),
+    ("Floors", ["PFA X [g]"], [0.5], ["Floor"]), ("Catalogue", ["Source", "Breadth [cm]"], ["here", 40], ["Type"]),
+    ("Places", ["Floor", "X [m]"], ["1", 2], ["Place"]), ("Places", ["Place", "X [m]"], ["Lift", 2], ["Floor"]),
+    ("Routes", ["Segment", "Floor"], ["S1", "1"], ["Route"]), ("Routes", ["Route", "Floor"], ["R1", "1"], ["Segment"]),
+]  # fmt: skip

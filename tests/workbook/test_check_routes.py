@@ -168,7 +168,7 @@ def test_names_are_spelt_as_where_they_stand_first_and_routes_are_of_the_items_f
     assert (inventory.items[0].route, inventory.items[0].segment) == ("Way", "hall")
 
 
-def test_a_missing_sheet_or_column_is_told_once(tmp_path: Path) -> None:
+def test_a_missing_sheet_column_or_cell_is_told_once_and_pieces_beside_routes_need_a_width(tmp_path: Path) -> None:
     more = "named in 3 rows, but there is no Places sheet. Add the sheet, or clear the column."
     assert errors_of(book(tmp_path, without="Places")) == {
         f"Routes!D2: From 'Office' and others are {more}", f"Routes!E2: To 'Upper' and others are {more}",
@@ -179,6 +179,23 @@ def test_a_missing_sheet_or_column_is_told_once(tmp_path: Path) -> None:
     sheets = {"Places": [["Floor", "X [m]"], ["1", 2]], "Routes": [HEADS["Routes"], *ROUTES.values()]}
     path = write(tmp_path, [HEADS["Items"], *ITEMS.values()], TWO_FLOORS, **sheets)
     assert errors_of(path) == {"Places!A1: the column Place is missing. Add it to the header row."}
+    unread: list[tuple[str, str, Any]] = [
+        ("Office", "X", "far"), ("Office", "Floor", None), ("Office", "Kind", "roof"),
+        ("Upper", "Kind", "roof"), ("aisle", "Route", None), ("aisle", "Segment", None), ("aisle", "Clear", "wide"),
+        ("aisle", "Required", -1), ("aisle", "Floor", "=A1"), ("aisle", "From", "#REF!"), ("hall", "Segment", None),
+        ("B1", "Floor", None), ("B1", "X", "left"), ("B1", "Route", "#REF!"), ("B1", "Segment", "=A1"),
+        ("B1", "Edge", "near"), ("B2", "X", "left"), ("B2", "Route", "#REF!"),
+    ]  # fmt: skip
+    for row, header, value in unread:
+        assert len(problems_of(book(tmp_path, **{row: {header: value}}))) == 1, (row, header)
+    nameless = problems_of(book(tmp_path, Office={"Place": None}))  # a segment names a place that is not there
+    assert [problem.place for problem in nameless] == ["Places!A2", "Routes!D2"]
+    others = dict.fromkeys(("X", "Y", "Route", "Segment", "Edge", "Width"))
+    message = "Items!K2: Width is blank and no Type gives it: the piece is taken as wide as its Breadth"
+    for kept, told in ((("X", "Y"), [True]), (("Route", "Segment", "Edge"), [True]), ((), [])):
+        blank = {name: None for name in others if name not in kept}
+        found = [one for one in remarks(sound(tmp_path, B1=blank), "warning") if "Width" in one]
+        assert [one.startswith(message) for one in found] == told
 
 
 JOINS = "the segment is evaluated, but joins nothing in the network. Fill in the other, or clear both."
@@ -273,25 +290,3 @@ def test_a_floor_that_cannot_be_drawn_counts_only_pieces_that_name_a_route(tmp_p
             f"Items!E2: 1 piece of floor '2' has a position, but {NO_PLAN} it names no Route: it is not counted. "
             "Fill in X and Y of the places, or name the Route.",
         }
-
-
-def test_a_cell_that_cannot_be_read_is_told_once_and_pieces_beside_routes_need_a_width(
-    tmp_path: Path,
-) -> None:
-    unread: list[tuple[str, str, Any]] = [
-        ("Office", "X", "far"), ("Office", "Floor", None), ("Office", "Kind", "roof"),
-        ("Upper", "Kind", "roof"), ("aisle", "Route", None), ("aisle", "Segment", None), ("aisle", "Clear", "wide"),
-        ("aisle", "Required", -1), ("aisle", "Floor", "=A1"), ("aisle", "From", "#REF!"), ("hall", "Segment", None),
-        ("B1", "Floor", None), ("B1", "X", "left"), ("B1", "Route", "#REF!"), ("B1", "Segment", "=A1"),
-        ("B1", "Edge", "near"), ("B2", "X", "left"), ("B2", "Route", "#REF!"),
-    ]  # fmt: skip
-    for row, header, value in unread:
-        assert len(problems_of(book(tmp_path, **{row: {header: value}}))) == 1, (row, header)
-    nameless = problems_of(book(tmp_path, Office={"Place": None}))  # a segment names a place that is not there
-    assert [problem.place for problem in nameless] == ["Places!A2", "Routes!D2"]
-    others = dict.fromkeys(("X", "Y", "Route", "Segment", "Edge", "Width"))
-    message = "Items!K2: Width is blank and no Type gives it: the piece is taken as wide as its Breadth"
-    for kept, told in ((("X", "Y"), [True]), (("Route", "Segment", "Edge"), [True]), ((), [])):
-        blank = {name: None for name in others if name not in kept}
-        found = [one for one in remarks(sound(tmp_path, B1=blank), "warning") if "Width" in one]
-        assert [one.startswith(message) for one in found] == told

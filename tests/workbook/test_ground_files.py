@@ -24,7 +24,7 @@ def _notes(inventory):
     return [(one.place, one.message) for one in inventory.problems if one.severity == "note"]
 
 
-def test_a_shakemap_beside_the_workbook_and_its_uncertainties_give_the_ground_motion(tmp_path):
+def test_a_shakemap_beside_the_workbook_gives_the_ground_motion_or_is_told_at_its_cell(tmp_path):
     inventory = assess.read_inventory(_write(tmp_path, shakemap="grid.xml", **PLACE))
     assert inventory.errors == ()
     assert inventory.site_ground.pga == pytest.approx(0.1525 * GRAVITY, rel=1e-3)
@@ -39,9 +39,6 @@ def test_a_shakemap_beside_the_workbook_and_its_uncertainties_give_the_ground_mo
     for inventory in (assess.read_inventory(path), assess.read_inventory(path.read_bytes(), records=files)):
         assert sorted(inventory.files) == ["grid.xml", "uncertainty.xml"]
         assert inventory.site_ground.shared == pytest.approx(0.182, abs=1e-3)
-
-
-def test_what_is_wrong_is_told_of_its_cell(tmp_path):
     blank = r"Latitude, Longitude are blank; .* grid\.xml needs .* Fill in .*\(cells B3, B4\)"
     for building, match in (
         ({}, blank),

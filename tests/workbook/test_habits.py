@@ -89,7 +89,7 @@ def test_a_hospital_typed_with_every_habit_is_read_with_notes_and_no_error(tmp_p
         assert len([one for one in rows if one.group == "breadth: unit"]) == count
 
 
-def test_mistakes_of_one_habit_are_one_message(tmp_path: Path) -> None:
+def test_mistakes_of_one_habit_are_one_message_and_problems_that_differ_stay_apart(tmp_path: Path) -> None:
     """Names that differ are different mistakes."""
     rows = [
         HEADER,
@@ -111,8 +111,6 @@ def test_mistakes_of_one_habit_are_one_message(tmp_path: Path) -> None:
     ]
     assert len(errors_of(path)) == 27, "the data keep one problem a cell"
 
-
-def test_problems_that_differ_stay_apart() -> None:
     def problem(cell: str, text: str = "{label} is odd.", group: str = "height", sheet: str = "Items") -> Problem:
         return Problem("error", sheet, cell, fill(text, label="Height"), "", group)
 

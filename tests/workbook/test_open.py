@@ -26,7 +26,7 @@ FOREIGN = [
 ]  # fmt: skip
 
 
-def test_no_workbook(tmp_path: Path) -> None:
+def test_no_workbook_and_workbooks_that_are_too_large_cut_off_protected_or_strict(tmp_path: Path) -> None:
     for name, data, message in FOREIGN:
         (tmp_path / name).write_bytes(data)
         (error,) = errors_of(tmp_path / name)
@@ -37,9 +37,6 @@ def test_no_workbook(tmp_path: Path) -> None:
     for name in ("n" * 5000, "zero\0.xlsx"):
         (error,) = errors_of(Path(name))
         assert "cannot be opened" in error or "does not exist" in error
-
-
-def test_workbooks_that_are_too_large_cut_off_protected_or_strict(tmp_path: Path) -> None:
     path = tmp_path / "large.xlsx"
     with path.open("wb") as file:
         file.write(b"PK\x03\x04")
@@ -51,10 +48,10 @@ def test_workbooks_that_are_too_large_cut_off_protected_or_strict(tmp_path: Path
         path.write_bytes(whole[: int(share * len(whole))])
         assert errors_of(path) == {"book.xlsx is damaged: its zip cannot be read. Open it in Excel and save it again."}
     path = write(tmp_path)
-    data = bytearray(path.read_bytes())
-    place = data.index(b"PK\x01\x02")
-    data[place + 8] |= 1
-    path.write_bytes(data)
+    coded = bytearray(path.read_bytes())
+    place = coded.index(b"PK\x01\x02")
+    coded[place + 8] |= 1
+    path.write_bytes(coded)
     assert errors_of(path) == {"book.xlsx is protected by a password. Save it without a password."}
     strict = replace(MAIN, "http://purl.oclc.org/ooxml/spreadsheetml/main")
     path = change_parts(write(tmp_path), {WORKBOOK: strict, SHEET: strict})

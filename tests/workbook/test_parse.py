@@ -58,7 +58,7 @@ def test_headers_of_a_table_and_lines_of_a_form_that_are_wrong(tmp_path: Path) -
     }
 
 
-def test_headers_in_any_order_and_spelling_and_below_a_title(tmp_path: Path) -> None:
+def test_headers_in_any_order_and_spelling_below_a_title_and_unknown_ones_which_are_kept(tmp_path: Path) -> None:
     items: Sheet = [["  HEIGHT [ CM ]", "fLoOr", "breadth[cm]", None, "It em", "Edge\u00a0 distance [m]"],
              [180, "1", 40, None, "A1", -0.5]]  # fmt: skip
     found = read(tmp_path, items).items[0]
@@ -70,9 +70,6 @@ def test_headers_in_any_order_and_spelling_and_below_a_title(tmp_path: Path) -> 
     assert errors_of(write(tmp_path, [*([["remark"]] * 20), *ITEMS])) == {
         "Items!A1: no header row was found in the first 20 rows. It needs the headers: Item, Floor."
     }
-
-
-def test_unknown_columns_are_kept_and_a_row_without_an_entry_is_left_out(tmp_path: Path) -> None:
     live = ["B/H", "PFA used [g]", "OR", "Kaneko-Hayashi", "Class (formula)"]
     own = [
         "Picture", "Inventory no.", "Bought", "Mass [kg]", "Mass", "Colour", "Owner", "Age [years]", "Z [m]",

@@ -180,7 +180,7 @@ def test_rows_and_cells_are_put_in_their_order_under_any_prefix_and_within_a_tru
     assert b'<dimension ref="A2:B3"/>' in parts_of(edited(before, {"Items": {"A2": 1}}))[SHEET]
 
 
-def test_what_only_looks_like_a_cell() -> None:
+def test_what_only_looks_like_a_cell_and_texts_and_numbers() -> None:
     """Comments, CDATA, attributes and elements elsewhere may hold what looks like a cell."""
     rows = """<sheetData><!-- <row r="1"><c r="A1"><v>9</v></c></row> --><row r='1' note="&lt;c r=&quot;A1&quot;>">
  <c t = "inlineStr" r='A1'><is><t><![CDATA[<c r="B1"><v>5</v></c></row></sheetData>]]></t></is></c >
@@ -192,9 +192,6 @@ def test_what_only_looks_like_a_cell() -> None:
     expected = rows.replace('<c r="C1"><v>3</v>', '<c r="B1"><v>2</v></c><c r="C1"><v>4</v>')
     assert text == f'<worksheet xmlns="{MAIN}">{expected}{tail}</worksheet>'
     assert values_of(after)["A1"] == '<c r="B1"><v>5</v></c></row></sheetData>'
-
-
-def test_texts_and_numbers() -> None:
     awkward = ["", " padded ", "a\nb\tc", "a\rb", "<&>\"'", "_x0041_", "_x005F_", "é€𝄞", "=1+1", "0123", "]]>"]
     before = minimal("<sheetData/>")
     for text in awkward:

@@ -26,24 +26,6 @@ def floors_with(record: str, axis: str = "X") -> Sheet:
     return [["Floor", f"Record {axis}"], ["1", record]]
 
 
-def test_records_are_read_and_a_direction_that_is_not_known_is_asked_for(tmp_path: Path) -> None:
-    (tmp_path / "records").mkdir()
-    write_record(tmp_path / "one.csv")
-    write_record(tmp_path / "records" / "two.csv", "time [s],NS [g],EW [g]")
-    inventory = read(tmp_path, floors=floors_with(r" one.csv ; records\two.csv#ew; records/two.csv # 1;"))
-    records = inventory.floors[0].records
-    assert list(records) == ["X"]
-    assert [one.name for one in records["X"]] == ["one.csv", r"records\two.csv#ew", "records/two.csv # 1"]
-    assert [one.record.channel for one in records["X"]] == ["NS", "EW", "NS"]
-    assert sorted(inventory.files) == ["one.csv", r"records\two.csv"]
-    assert all(re.fullmatch("[0-9a-f]{64}", digest) for digest in inventory.files.values())
-    write_record(tmp_path / "one.csv", "time [s],acceleration [g]")
-    (warning,) = remarks(read(tmp_path, floors=floors_with("one.csv")), "warning")
-    assert warning.startswith("Floors!B2: the direction of 'one.csv' is not known: is it horizontal?")
-    write_record(tmp_path / "one.csv", "time [s],x [g]")
-    assert not remarks(read(tmp_path, floors=floors_with("one.csv")), "warning")
-
-
 BAD_RECORDS = [
     ("two.csv", "two.csv holds 2 channels: NS, Up. Name one of them, such as two.csv#NS."),
     ("two.csv#9", "two.csv has no channel '9'. It holds: NS, Up."),
@@ -85,7 +67,7 @@ def test_records_that_cannot_be_used_and_links_that_lead_outside_the_folder(tmp_
         assert error.startswith(f"Floors!B2: {message}")
 
 
-def test_direction_of_records(tmp_path: Path) -> None:
+def test_records_are_read_with_their_direction_and_one_that_is_not_known_is_asked_for(tmp_path: Path) -> None:
     for building, record, axis, off in (
         (0, 15, "X", None), (0, 16, "X", 16), (0, 196, "X", 16), (0, 180, "X", None), (0, 90, "Y", None),
         (0, 0, "Y", 90), (350, 10, "X", 20), (350, 360, "X", None), (-90, 0, "Y", None), (None, 45, "X", None),
@@ -95,6 +77,21 @@ def test_direction_of_records(tmp_path: Path) -> None:
         message = f"Floors!B2: 'one.csv' points to {record} deg, {off} deg off the {axis} axis."
         fix = "Check the axis, or Azimuth of X in Building."
         assert remarks(inventory, "warning") == (set() if off is None else {f"{message} {fix}"})
+    (tmp_path / "records").mkdir()
+    write_record(tmp_path / "one.csv")
+    write_record(tmp_path / "records" / "two.csv", "time [s],NS [g],EW [g]")
+    inventory = read(tmp_path, floors=floors_with(r" one.csv ; records\two.csv#ew; records/two.csv # 1;"))
+    records = inventory.floors[0].records
+    assert list(records) == ["X"]
+    assert [one.name for one in records["X"]] == ["one.csv", r"records\two.csv#ew", "records/two.csv # 1"]
+    assert [one.record.channel for one in records["X"]] == ["NS", "EW", "NS"]
+    assert sorted(inventory.files) == ["one.csv", r"records\two.csv"]
+    assert all(re.fullmatch("[0-9a-f]{64}", digest) for digest in inventory.files.values())
+    write_record(tmp_path / "one.csv", "time [s],acceleration [g]")
+    (warning,) = remarks(read(tmp_path, floors=floors_with("one.csv")), "warning")
+    assert warning.startswith("Floors!B2: the direction of 'one.csv' is not known: is it horizontal?")
+    write_record(tmp_path / "one.csv", "time [s],x [g]")
+    assert not remarks(read(tmp_path, floors=floors_with("one.csv")), "warning")
 
 
 UNSERVED = "Fill in PFA X or PFA Y, or name a record; or fill in Ground PGA, or choose Shaking, in Building."

@@ -65,7 +65,7 @@ def test_the_centre_of_gravity_is_the_rows_own_else_the_types_and_the_axis_that_
     assert (last.axis, "axis" in last.assumed) == ("X", False)
 
 
-def test_friction_of_the_building(tmp_path: Path) -> None:
+def test_friction_of_the_building_half_a_position_and_cells_that_contradict_each_other(tmp_path: Path) -> None:
     inventory = read(tmp_path, [[*ITEMS[0], "Friction"], [*ITEMS[1], None], ["A2", "1", 40, 180, 0.7]])
     assert inventory.items[0].friction is None
     changed = dataclasses.replace(inventory, building=dataclasses.replace(inventory.building, friction=0.3))
@@ -77,9 +77,6 @@ def test_friction_of_the_building(tmp_path: Path) -> None:
     ]  # fmt: skip
     read_now = read(tmp_path, Building=[["Default friction", 0.3]])
     assert read_now.friction_of(read_now.items[0]) == 0.3
-
-
-def test_half_a_position_and_cells_of_a_row_that_contradict_each_other_are_warned_of(tmp_path: Path) -> None:
     header = [*ITEMS[0], "X [m]", "Y [m]", "Width [cm]"]
     inventory = read(tmp_path, [header, [*ITEMS[1], 1, None, 90], ["A2", "1", 40, 180, None, 2, 90]])
     message = "a position needs both X and Y. Fill in the other, or clear both."

@@ -170,7 +170,7 @@ REFUSED = {
 }
 
 
-def test_what_cannot_be_moved_with_certainty_is_refused() -> None:
+def test_what_cannot_be_moved_is_refused_and_sheets_are_found_by_names_that_formulas_quote() -> None:
     for rows, message in REFUSED.items():
         book = open_workbook(minimal(rows), "book.xlsx")
         with pytest.raises(WorkbookError, match=message):
@@ -179,6 +179,12 @@ def test_what_cannot_be_moved_with_certainty_is_refused() -> None:
     for first, count in ((1, 1), (2, 9)):
         with pytest.raises(WorkbookError, match="a table keeps its headers"):
             table.delete_rows("Items", first, count)
+    packed = io.BytesIO()
+    with xlsxwriter.Workbook(packed) as book:
+        book.add_worksheet("Joe's R&D").write_column(0, 0, [1, 2, 3])
+        book.add_worksheet("Other").write_formula("A1", "='Joe''s R&D'!A3", None, 3)
+    data = open_workbook(packed.getvalue(), "book.xlsx").insert_rows("Joe's R&D", 2).to_bytes()
+    assert openpyxl.load_workbook(io.BytesIO(data))["Other"]["A1"].value == "='Joe''s R&D'!A4"
 
 
 @needs_libreoffice
@@ -207,12 +213,3 @@ def test_every_formula_gives_what_it_gave(tmp_path: Path, name: str) -> None:
     others = {key: both for key, both in differing.items() if key[0] not in ("Lists", "My analysis")}
     assert {cell.rstrip("0123456789") for _, cell in others} <= counted, others
     assert len(old) > 100
-
-
-def test_sheets_are_found_by_names_that_formulas_quote() -> None:
-    packed = io.BytesIO()
-    with xlsxwriter.Workbook(packed) as book:
-        book.add_worksheet("Joe's R&D").write_column(0, 0, [1, 2, 3])
-        book.add_worksheet("Other").write_formula("A1", "='Joe''s R&D'!A3", None, 3)
-    data = open_workbook(packed.getvalue(), "book.xlsx").insert_rows("Joe's R&D", 2).to_bytes()
-    assert openpyxl.load_workbook(io.BytesIO(data))["Other"]["A1"].value == "='Joe''s R&D'!A4"

@@ -113,7 +113,7 @@ def test_a_number_written_in_any_accepted_way_reads_back(
     assert meant(column, text, unit)[0] == number, "without a unit it is in that of the header"
 
 
-def test_a_cell_that_shows_a_percentage(tmp_path: Path) -> None:
+def test_a_percentage_and_every_cell_that_is_taken_have_a_note_and_a_correction(tmp_path: Path) -> None:
     """Excel stores 45 % as 0.45: a share is read as it shows; a PFA of 15 % is 0.15 g by itself."""
     path = write(tmp_path, [["Item", "Floor", "Breadth [cm]", "Height [cm]", "Centre of gravity [%]"],
                             ["A1", "1", 40, 180, 0.45], ["A2", "1", 40, 180, 45]],
@@ -130,6 +130,43 @@ def test_a_cell_that_shows_a_percentage(tmp_path: Path) -> None:
         "Items!E2: Centre of gravity [%]: 45.000% is a percentage; it is read as 45 %."
     }
     assert meant(HEIGHT, Percent(0.45))[0] == 0.45
+    items: Sheet = [["Item", "Floor", "Breadth [cm]", "Height [cm]", "Anchored", "Against wall", "Notes"],
+                    ["A1", "B\u20131", "45 cm", "1.80 m", "N", True, "x"], ["A2", "B-1 ", 45.5, "'200", True, "no", 4],
+                    ["A3", "B-1", 45, 180, "no", None, None]]  # fmt: skip
+    building: Sheet = [["Report date", "after Easter"], ["Shaking", "MMI 7"]]
+    inventory = read(tmp_path, items, [["Floor", "PFA X [g]"], ["B-1", "15 %"]], Building=building)
+    first, second, _ = inventory.items
+    assert (first.floor, first.breadth, first.height) == ("B-1", 0.45, 1.8)
+    assert (first.anchored, first.against_wall) == ("no", True)
+    assert (second.height, second.anchored, inventory.building.report_date) == (2.0, "yes", "after Easter")
+    assert {(one.sheet, one.cell, one.was, one.value) for one in inventory.corrections} == {
+        ("Building", "B2", "MMI 7", "MMI VII, very strong"), ("Floors", "B2", "15 %", 0.15),
+        ("Items", "B2", "B\u20131", "B-1"), ("Items", "C2", "45 cm", 45), ("Items", "D2", "1.80 m", 180),
+        ("Items", "E2", "N", "no"), ("Items", "B3", "B-1 ", "B-1"), ("Items", "D3", "'200", 200), ("Items", "E3", "True", "yes"),
+    }  # fmt: skip
+    assert all(isinstance(one, Correction) and one.why for one in inventory.corrections)
+    assert {one for one in remarks(inventory, "note") if ": '" in one} == {
+        "Building!B2: Shaking: 'MMI 7' is read as MMI VII, very strong.",
+        "Floors!B2: PFA X [g]: '15 %' is a percentage; it is read as 0.15 g.",
+        "Items!B2: Floor: 'B\u20131' has look-alike signs or digits; it is read as 'B-1'.",
+        "Items!B3: Floor: 'B-1 ' has stray spaces; it is read as 'B-1'.",
+        "Items!C2: Breadth [cm]: '45 cm' holds its unit; it is read as 45 cm.",
+        "Items!D2: Height [cm]: '1.80 m' holds its unit; it is read as 180 cm.",
+        "Items!D3: Height [cm]: ''200' is a number stored as text; it is read as 200 cm.",
+        "Items!E2: Anchored: 'N' is read as no.",
+        "Items!E3: Anchored: 'True' is read as yes.",
+    }
+    assert remarks(inventory, "warning") == {
+        "Building!B1: Report date is 'after Easter', which is not read as a date; it is shown as typed. "
+        "Write it as year-month-day: 2026-12-31."
+    }
+    rows = {"Items": [{"item": "A1", "floor": "1", "breadth": "45 cm", "height": 180}],
+            "Floors": [{"floor": "1", "pfa_x": 0.5}]}  # fmt: skip
+    inventory = read_inventory(rows)
+    assert (inventory.items[0].breadth, inventory.corrections) == (0.45, ())
+    assert remarks(inventory, "note") == {
+        "Items row 1 Breadth: Breadth [cm]: '45 cm' holds its unit; it is read as 45 cm."
+    }
 
 
 SHAKING = BUILDING.column("shaking")
@@ -177,43 +214,3 @@ def test_choices_and_dates_as_they_are_typed_and_dates_that_are_wrong() -> None:
         with pytest.raises(CellError) as caught:
             meant(DATE, text)
         assert str(caught.value.message).endswith(why)
-
-
-def test_every_cell_that_is_taken_has_a_note_and_a_correction_and_rows_in_code_have_none(tmp_path: Path) -> None:
-    items: Sheet = [["Item", "Floor", "Breadth [cm]", "Height [cm]", "Anchored", "Against wall", "Notes"],
-                    ["A1", "B\u20131", "45 cm", "1.80 m", "N", True, "x"], ["A2", "B-1 ", 45.5, "'200", True, "no", 4],
-                    ["A3", "B-1", 45, 180, "no", None, None]]  # fmt: skip
-    building: Sheet = [["Report date", "after Easter"], ["Shaking", "MMI 7"]]
-    inventory = read(tmp_path, items, [["Floor", "PFA X [g]"], ["B-1", "15 %"]], Building=building)
-    first, second, _ = inventory.items
-    assert (first.floor, first.breadth, first.height) == ("B-1", 0.45, 1.8)
-    assert (first.anchored, first.against_wall) == ("no", True)
-    assert (second.height, second.anchored, inventory.building.report_date) == (2.0, "yes", "after Easter")
-    assert {(one.sheet, one.cell, one.was, one.value) for one in inventory.corrections} == {
-        ("Building", "B2", "MMI 7", "MMI VII, very strong"), ("Floors", "B2", "15 %", 0.15),
-        ("Items", "B2", "B\u20131", "B-1"), ("Items", "C2", "45 cm", 45), ("Items", "D2", "1.80 m", 180),
-        ("Items", "E2", "N", "no"), ("Items", "B3", "B-1 ", "B-1"), ("Items", "D3", "'200", 200), ("Items", "E3", "True", "yes"),
-    }  # fmt: skip
-    assert all(isinstance(one, Correction) and one.why for one in inventory.corrections)
-    assert {one for one in remarks(inventory, "note") if ": '" in one} == {
-        "Building!B2: Shaking: 'MMI 7' is read as MMI VII, very strong.",
-        "Floors!B2: PFA X [g]: '15 %' is a percentage; it is read as 0.15 g.",
-        "Items!B2: Floor: 'B\u20131' has look-alike signs or digits; it is read as 'B-1'.",
-        "Items!B3: Floor: 'B-1 ' has stray spaces; it is read as 'B-1'.",
-        "Items!C2: Breadth [cm]: '45 cm' holds its unit; it is read as 45 cm.",
-        "Items!D2: Height [cm]: '1.80 m' holds its unit; it is read as 180 cm.",
-        "Items!D3: Height [cm]: ''200' is a number stored as text; it is read as 200 cm.",
-        "Items!E2: Anchored: 'N' is read as no.",
-        "Items!E3: Anchored: 'True' is read as yes.",
-    }
-    assert remarks(inventory, "warning") == {
-        "Building!B1: Report date is 'after Easter', which is not read as a date; it is shown as typed. "
-        "Write it as year-month-day: 2026-12-31."
-    }
-    rows = {"Items": [{"item": "A1", "floor": "1", "breadth": "45 cm", "height": 180}],
-            "Floors": [{"floor": "1", "pfa_x": 0.5}]}  # fmt: skip
-    inventory = read_inventory(rows)
-    assert (inventory.items[0].breadth, inventory.corrections) == (0.45, ())
-    assert remarks(inventory, "note") == {
-        "Items row 1 Breadth: Breadth [cm]: '45 cm' holds its unit; it is read as 45 cm."
-    }

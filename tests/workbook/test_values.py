@@ -134,7 +134,7 @@ def test_a_wrong_value_is_one_error_at_its_cell(tmp_path: Path, sheet: str) -> N
         assert error.startswith(f"{sheet}!{CELLS[sheet]}: {message}"), (header, value, error)
 
 
-def test_unusual_numbers_and_a_formula_without_address_are_reported_where_they_stand(
+def test_unusual_numbers_and_formulas_are_reported_where_they_stand_and_texts_are_cleaned(
     tmp_path: Path,
 ) -> None:
     unusual = [
@@ -148,6 +148,23 @@ def test_unusual_numbers_and_a_formula_without_address_are_reported_where_they_s
         assert found == {f"{sheet}!{CELLS[sheet]}: {message} Check the number and the unit."}
     path = change_parts(write(tmp_path), {SHEET: replace('<c r="D2" t="n"><v>180</v>', "<c><f>2*90</f>")})
     assert errors_of(path) == {f"Items!D2: {NO_VALUE}"}
+    # Written by XlsxWriter, which escapes control characters as Excel does.
+    texts = [
+        ("bell\x07", "bell\ufffd", 1), ("_x0007_", "\ufffd", 1), ("\u202egnp.exe", "gnp.exe", 1),
+        ("a\u200eb\u2066c\u2069", "abc", 3), ("zero\u200b width", "zero width", 1),
+        ("two\nlines\tand a tab", "two\nlines\tand a tab", 0), ("carriage\r\nreturn", "carriage\nreturn", 0),
+        ("=1+1", "=1+1", 0), ("<b>&amp;</b>", "<b>&amp;</b>", 0), ("家具 ✓ ß", "家具 ✓ ß", 0),
+    ]  # fmt: skip
+    rows = [[f"A{at}", "1", 40, 180, text] for at, (text, *_) in enumerate(texts)]
+    sheets = {"Items": [[*ITEMS[0], "Notes"], *rows], "Floors": FLOORS}
+    inventory = read_inventory(write_shared(tmp_path / "book.xlsx", sheets, strings_to_formulas=False))
+    assert [one.notes for one in inventory.items] == [clean for _, clean, _ in texts]
+    assert remarks(inventory, "warning") == {
+        f"Items!E{row}: {removed} control or direction character{' in Notes was' if removed == 1 else 's in Notes were'} "
+        "taken out."
+        for row, (*_, removed) in enumerate(texts, 2)
+        if removed
+    }
 
 
 def test_a_limit_itself_is_allowed_in_every_unit_and_floors_have_names_of_every_kind(tmp_path: Path) -> None:
@@ -169,26 +186,6 @@ def test_a_limit_itself_is_allowed_in_every_unit_and_floors_have_names_of_every_
         "Floors!A3: duplicate Floor 'GROUND', also in A2. Give each its own name.",
         "Items!B3: Floor 'Grond' is not in the Floors sheet. "
         "Choose one of the Floors sheet, or add it there. Did you mean Ground?",
-    }
-
-
-def test_texts_are_cleaned(tmp_path: Path) -> None:
-    """Written by XlsxWriter, which escapes control characters as Excel does."""
-    texts = [
-        ("bell\x07", "bell\ufffd", 1), ("_x0007_", "\ufffd", 1), ("\u202egnp.exe", "gnp.exe", 1),
-        ("a\u200eb\u2066c\u2069", "abc", 3), ("zero\u200b width", "zero width", 1),
-        ("two\nlines\tand a tab", "two\nlines\tand a tab", 0), ("carriage\r\nreturn", "carriage\nreturn", 0),
-        ("=1+1", "=1+1", 0), ("<b>&amp;</b>", "<b>&amp;</b>", 0), ("家具 ✓ ß", "家具 ✓ ß", 0),
-    ]  # fmt: skip
-    rows = [[f"A{at}", "1", 40, 180, text] for at, (text, *_) in enumerate(texts)]
-    sheets = {"Items": [[*ITEMS[0], "Notes"], *rows], "Floors": FLOORS}
-    inventory = read_inventory(write_shared(tmp_path / "book.xlsx", sheets, strings_to_formulas=False))
-    assert [one.notes for one in inventory.items] == [clean for _, clean, _ in texts]
-    assert remarks(inventory, "warning") == {
-        f"Items!E{row}: {removed} control or direction character{' in Notes was' if removed == 1 else 's in Notes were'} "
-        "taken out."
-        for row, (*_, removed) in enumerate(texts, 2)
-        if removed
     }
 
 
