@@ -1,5 +1,6 @@
 """Boxes of pieces, and the base on which each stands."""
 
+import itertools
 import math
 from itertools import pairwise
 
@@ -22,10 +23,6 @@ def leg(x: float, y: float, half: float = 0.001) -> tuple[float, float, float, f
     return x - half, y - half, 0.0, x + half, y + half, 0.5
 
 
-def on_circle(radius: float, *degrees: float) -> list[tuple[float, float]]:
-    return [(radius * math.cos(math.radians(one)), radius * math.sin(math.radians(one))) for one in degrees]
-
-
 WARDROBE = (-0.3, -0.5, 0.1, 0.3, 0.5, 2.0)
 
 
@@ -37,34 +34,25 @@ def test_a_plinth_set_back_at_the_front_only_and_a_base_in_the_form_of_a_cross()
         assert found.support_across == pytest.approx(1.0), turn
     # Four feet on the axes, 35 cm from the middle: the edges between them are at 45 degrees, and nearer.
     body = (-0.35, -0.35, 0.5, 0.35, 0.35, 1.0)
-    found = find_box(draw(body, *(leg(x, y) for x, y in on_circle(0.349, 0, 90, 180, 270))))
+    found = find_box(draw(body, leg(0.349, 0), leg(0, 0.349), leg(-0.349, 0), leg(0, -0.349)))
     assert found.support_breadth == pytest.approx(0.7)
     assert found.support_reach == pytest.approx(0.35 / math.sqrt(2), abs=2e-3)
     assert abs(found.support_angle_deg) == pytest.approx(45, abs=0.5)
     assert found.support_across == pytest.approx(0.7 * math.sqrt(2))
 
 
-@pytest.mark.parametrize("turn", [0.0, 30.0, -75.0])
-@pytest.mark.parametrize("body", [(0.6, 1.0), (0.6, 0.6)])
-def test_feet_at_the_corners_of_a_rectangle_about_the_middle(body, turn):
-    """The edge along the longer side is the nearest; of a square, one along its own axes."""
-    breadth, width = body
-    x, y = breadth / 2 - 0.05, width / 2 - 0.05
-    found = find_box(draw((-breadth / 2, -width / 2, 0.5, breadth / 2, width / 2, 0.6),
-                          *(leg(i * x, j * y) for i in (-1, 1) for j in (-1, 1)), turn=turn))  # fmt: skip
-    assert found.support_reach == pytest.approx(found.support_breadth / 2)
-    assert found.support_angle_deg == pytest.approx(found.angle_deg)
-    assert found.support_across == pytest.approx(found.width)
-
-
-@pytest.mark.parametrize(
-    "feet",
-    [[(0.2, -0.4), (0.2, 0.4), (0.28, 0.0)], [(0.1, -0.4), (0.1, 0.4)], [(0.0, 0.0)]],
-    ids=["beside the middle", "two feet", "one foot"],
-)
-def test_a_middle_beside_its_base_has_no_reach(feet):
-    found = find_box(draw(WARDROBE, *(leg(x, y, 0.0) for x, y in feet)))
-    assert (found.support_reach, found.support_angle_deg) == (0.0, found.angle_deg)
+def test_feet_at_the_corners_of_a_rectangle_about_the_middle_and_a_middle_beside_its_base_has_no_reach():
+    # The edge along the longer side is the nearest; of a square, one along its own axes.
+    for turn, width in itertools.product((0.0, 30.0, -75.0), (1.0, 0.6)):
+        feet = [leg(i * 0.25, j * (width / 2 - 0.05)) for i in (-1, 1) for j in (-1, 1)]
+        found = find_box(draw((-0.3, -width / 2, 0.5, 0.3, width / 2, 0.6), *feet, turn=turn))
+        assert found.support_reach == pytest.approx(found.support_breadth / 2), (turn, width)
+        assert found.support_angle_deg == pytest.approx(found.angle_deg), (turn, width)
+        assert found.support_across == pytest.approx(found.width), (turn, width)
+    # Beside the middle, two feet, one foot.
+    for on in ([(0.2, -0.4), (0.2, 0.4), (0.28, 0.0)], [(0.1, -0.4), (0.1, 0.4)], [(0.0, 0.0)]):
+        found = find_box(draw(WARDROBE, *(leg(x, y, 0.0) for x, y in on)))
+        assert (found.support_reach, found.support_angle_deg) == (0.0, found.angle_deg), on
 
 
 def test_no_direction_is_nearer_than_the_edge_that_is_found():

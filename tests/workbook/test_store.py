@@ -4,7 +4,6 @@ import io
 import random
 import shutil
 import zipfile
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -77,14 +76,6 @@ VALUES = st.one_of(
 CELLS = st.tuples(st.sampled_from(["Items", "Floors", "Building"]), st.integers(1, 14), st.integers(0, 11))
 
 
-def _by_sheet(edits: Mapping[tuple[str, int, int], Value]) -> dict[str, dict[Place, Value]]:
-    found: dict[str, dict[Place, Value]] = {}
-    for (sheet, row, at), value in edits.items():
-        if (row, at) not in FIXED.get(sheet, ()):
-            found.setdefault(sheet, {})[row, at] = value
-    return found
-
-
 def _read(held: Workbook, folder: Path | None = None, kept: KeptFiles | None = None) -> Inventory:
     tables, problems = parse_workbook(held)
     return build_inventory(tables, problems, Path("inventory.xlsx"), folder, kept=kept)
@@ -100,7 +91,11 @@ def _read_bytes(data: bytes, folder: Path | None = None) -> Inventory:
 def test_what_is_held_reads_as_the_bytes_do(first: dict[Any, Any], second: dict[Any, Any]) -> None:
     held = open_workbook(ODD, "inventory.xlsx")
     assert _read(held) == _read_bytes(ODD)
-    for edits in map(_by_sheet, (first, second)):
+    for changes in (first, second):
+        edits: dict[str, dict[Place, Value]] = {}
+        for (sheet, row, at), value in changes.items():
+            if (row, at) not in FIXED.get(sheet, ()):
+                edits.setdefault(sheet, {})[row, at] = value
         held = held.set(edits)
         data = held.to_bytes()
         anew = open_workbook(data, "inventory.xlsx")
