@@ -1,27 +1,27 @@
-"""Draws damaged files: for tests that nothing but RecordError comes of them."""
+"""Damaged files, of which nothing but RecordError comes, and the reading of one channel."""
 
 from collections.abc import Sequence
 
 from hypothesis import strategies as st
 
-TOKENS = st.sampled_from(
-    [
-        b"",
-        b"nan",
-        b"1E999",
-        b"-inf",
-        b"\0",
-        b"9999999999",
-        b"-32768",
-        b"0.17E+39",
-        b"1_0",
-        b"\xff",
-        b"\n",
-        b"|",
-        b"[g]",
-        b";",
-    ]
-)
+from assess.motion.formats import Format
+from assess.motion.record import Record
+
+TOKENS = st.sampled_from([
+    b"", b"nan", b"1E999", b"-inf", b"\0", b"9999999999", b"-32768", b"0.17E+39", b"1_0", b"\xff", b"\n", b"|", b"[g]",
+    b";",
+])  # fmt: skip
+
+
+def read_only(made: Format, data: bytes) -> Record:
+    """Return the only channel of a file."""
+    (record,) = made.read(data, "made")
+    return record
+
+
+def changed(data: bytes, old: bytes, new: bytes) -> bytes:
+    assert old in data
+    return data.replace(old, new, 1)
 
 
 class Damaged:

@@ -21,7 +21,7 @@ def read_set(folder: Path, data: bytes, name: str = "set.zip") -> tuple[Record, 
     return read_records(path)
 
 
-def test_members(tmp_path: Path) -> None:
+def test_members_also_raw_and_corrected_ones_side_by_side(tmp_path: Path) -> None:
     records = read_set(tmp_path, zipped({**README, "a/CHAN1.V2": csmip_v2(*THREE), "b.at2": at2(), "empty.txt": b""}))
     assert [(record.file, record.channel) for record in records] == [
         ("set.zip/a/CHAN1.V2", "11"), ("set.zip/a/CHAN1.V2", "12"), ("set.zip/a/CHAN1.V2", "13"),
@@ -29,9 +29,6 @@ def test_members(tmp_path: Path) -> None:
     ]  # fmt: skip
     (alone,) = read_set(tmp_path, at2(), "alone.at2")
     assert (records[3].acceleration == alone.acceleration).all()
-
-
-def test_raw_and_corrected_side_by_side(tmp_path: Path) -> None:
     records = read_set(tmp_path, zipped({"C.V1": csmip_v1(EAST), "C.V2": csmip_v2(EAST)}))
     assert [record.corrected for record in records] == [False, True]
 
@@ -47,13 +44,10 @@ def test_archives_in_archives(tmp_path: Path, method: int) -> None:
         read_set(tmp_path, zipped({"in3.zip": data}, method))
 
 
-def test_velocities_are_left_out(tmp_path: Path) -> None:
+def test_velocities_and_damaged_members_are_left_out(tmp_path: Path) -> None:
     members = {name: (RECORDS / f"1103.HN2.NP.RE_{name}.smc").read_bytes() for name in ("a", "v")}
     (record,) = read_set(tmp_path, zipped(members))
     assert (record.file, record.format) == ("set.zip/a", "USGS SMC")
-
-
-def test_a_damaged_member_does_not_lose_the_others(tmp_path: Path) -> None:
     data = zipped({"a.V2": csmip_v2(EAST), "b.V2": csmip_v2(NORTH)}, zipfile.ZIP_STORED)
     at = data.index(b"POINTS OF ACCEL")
     (record,) = read_set(tmp_path, data[:at] + b"x" + data[at + 1 :])
@@ -81,31 +75,26 @@ def test_nothing_to_read(tmp_path: Path) -> None:
         read_set(tmp_path, zipped({}))
 
 
-@pytest.mark.parametrize("name", ["[Content_Types].xml", "META-INF/manifest.xml"])
-def test_workbooks(tmp_path: Path, name: str) -> None:
-    with pytest.raises(
-        RecordError, match=r"set\.xlsx: the file is a workbook or another office file, .*: save the sheet as CSV"
-    ):
-        read_set(tmp_path, zipped({name: b"<Types/>", "xl/workbook.xml": b"<workbook/>"}), "set.xlsx")
+def test_workbooks(tmp_path: Path) -> None:
+    message = r"set\.xlsx: the file is a workbook or another office file, .*: save the sheet as CSV"
+    for name in ("[Content_Types].xml", "META-INF/manifest.xml"):
+        with pytest.raises(RecordError, match=message):
+            read_set(tmp_path, zipped({name: b"<Types/>", "xl/workbook.xml": b"<workbook/>"}), "set.xlsx")
 
 
-def test_locked(tmp_path: Path) -> None:
+def test_locked_and_damaged(tmp_path: Path) -> None:
     data = bytearray(zipped({"a.V2": csmip_v2(EAST)}))
     for start, flags in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
         data[data.index(start) + flags] |= 1
     with pytest.raises(RecordError, match=r"a\.V2 is locked with a password: unpack the archive"):
         read_set(tmp_path, bytes(data))
-
-
-def test_damaged(tmp_path: Path) -> None:
     data = zipped({"a.V2": csmip_v2(EAST)})
     with pytest.raises(RecordError, match=r"the zip archive is damaged: its directory cannot be read\. Get it again"):
         read_set(tmp_path, data[:-40])
     with pytest.raises(RecordError, match=r"a\.V2: the file is damaged: its data cannot be unpacked\. Get it again"):
         read_set(tmp_path, data[:100] + b"????" + data[104:])
-    with pytest.raises(
-        RecordError, match=r"a\.V2: the file is compressed by a method that is not supported \(14\): unpack the archive"
-    ):
+    message = r"a\.V2: the file is compressed by a method that is not supported \(14\): unpack the archive"
+    with pytest.raises(RecordError, match=message):
         read_set(tmp_path, zipped({"a.V2": csmip_v2(EAST)}, zipfile.ZIP_LZMA))
 
 
@@ -139,46 +128,35 @@ def peak_memory(data: bytes, message: str) -> int:
         tracemalloc.stop()
 
 
-def test_a_member_that_unpacks_to_too_much() -> None:
+def test_members_that_unpack_to_too_much_or_lie_about_their_size() -> None:
     data = zipped({"zeros": bytes(50_000_000)})
     message = r"zeros unpacks to more than 200 times its size, which no record does\. Get the archive again"
     assert peak_memory(data, message) < 5_000_000
-
-
-def test_a_bomb_in_an_inner_archive() -> None:
-    inner = zipped({"zeros": bytes(50_000_000)})
+    inner = data
     assert peak_memory(zipped({"in.zip": inner, **README}), r"unpacks to more than 200 times") < 5_000_000
-
-
-def test_a_member_that_lies_about_its_size() -> None:
-    data, size = zipped({"zeros": bytes(50_000_000)}), (50_000_000).to_bytes(4, "little")
+    size = (50_000_000).to_bytes(4, "little")
     assert data.count(size) == 2
     lie = data.replace(size, (1000).to_bytes(4, "little"))
     assert peak_memory(lie, r"zeros: the file is damaged") < 5_000_000
 
 
 def test_limits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    data = zipped({"a.V2": csmip_v2(EAST), "b.V2": csmip_v2(NORTH)})
-    monkeypatch.setattr(_archive, "LARGEST_MEMBER", 10_000)
-    with pytest.raises(
-        RecordError, match=r"holds more than 256 MB, or 0 MB in one member: unpack it, and name the file"
+    data, inner = zipped({"a.V2": csmip_v2(EAST), "b.V2": csmip_v2(NORTH)}), zipped({"a.V2": csmip_v2(EAST), "b": b"b"})
+    for limit, value, made, message in (
+        ("LARGEST_MEMBER", 10_000, data, "holds more than 256 MB, or 0 MB in one member: unpack it, and name the file"),
+        ("MOST_UNPACKED", 20_000, data, "the zip archive holds more than 0 MB"),
+        ("MOST_MEMBERS", 1, data, "the zip archive has more than 1 members: unpack it"),
+        (
+            "MOST_MEMBERS",
+            3,
+            zipped({"1.zip": inner, "2.zip": inner}),
+            "the zip archive has more than 3 members: unpack it",
+        ),
     ):
-        read_set(tmp_path, data)
-    monkeypatch.undo()
-    monkeypatch.setattr(_archive, "MOST_UNPACKED", 20_000)
-    with pytest.raises(RecordError, match=r"the zip archive holds more than 0 MB"):
-        read_set(tmp_path, data)
-    monkeypatch.undo()
-    monkeypatch.setattr(_archive, "MOST_MEMBERS", 1)
-    with pytest.raises(RecordError, match=r"the zip archive has more than 1 members: unpack it"):
-        read_set(tmp_path, data)
-
-
-def test_members_of_inner_archives_count_with_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(_archive, "MOST_MEMBERS", 3)
-    inner = zipped({"a.V2": csmip_v2(EAST), "b": b"b"})
-    with pytest.raises(RecordError, match=r"the zip archive has more than 3 members: unpack it"):
-        read_set(tmp_path, zipped({"1.zip": inner, "2.zip": inner}))
+        monkeypatch.setattr(_archive, limit, value)
+        with pytest.raises(RecordError, match=message):
+            read_set(tmp_path, made)
+        monkeypatch.undo()
 
 
 def test_what_is_left_out_is_said_once(tmp_path: Path) -> None:

@@ -35,12 +35,9 @@ def find_exact(alpha: float, count: int) -> FloatArray:
     return np.asarray(np.sqrt(values[0] / values))
 
 
-def test_periods_of_a_shear_beam_are_as_1_to_3_to_5() -> None:
+def test_periods_of_a_shear_beam_are_as_1_to_3_to_5_and_of_one_that_bends_by_formula() -> None:
     np.testing.assert_allclose(1 / solve_beam(SHEAR)[0][:4], [1, 3, 5, 7], rtol=0.01)
     assert 1 / solve_beam(30.0)[0][1] == pytest.approx(3.0, rel=0.01)
-
-
-def test_periods_of_a_cantilever_that_bends() -> None:
     np.testing.assert_allclose(1 / solve_beam(0.0)[0][:3], [1, 6.27, 17.55], rtol=0.02)
 
 
@@ -49,7 +46,7 @@ def test_periods_between_are_those_of_the_characteristic_equation(alpha: float) 
     np.testing.assert_allclose(solve_beam(alpha)[0][:4], find_exact(alpha, 4), rtol=0.01)
 
 
-def test_shares_by_formula() -> None:
+def test_shares_by_formula_which_are_none_at_the_base_and_hold_beyond_the_roof() -> None:
     """A shear beam's are 4/(pi n) sin(n pi z/2), n = 1, 3, 5."""
     z = np.array([0.25, 0.5, 0.8, 1.0])
     found = find_shares(np.full(4, SHEAR), z)
@@ -57,9 +54,6 @@ def test_shares_by_formula() -> None:
         np.testing.assert_allclose(found[:, mode], 4 / (np.pi * n) * np.sin(n * np.pi * z / 2), atol=0.025)
     assert found[-1, 0] == pytest.approx(4 / np.pi, rel=0.005)
     np.testing.assert_allclose(find_shares(np.zeros(1), np.ones(1))[0, :3], [1.566, -0.868, 0.509], rtol=0.005)
-
-
-def test_shares_are_none_at_the_base_and_hold_beyond_the_roof() -> None:
     base, roof, above = find_shares(np.full(3, 5.0), np.array([0.0, 1.0, 1.2]))
     assert not base.any()
     np.testing.assert_array_equal(roof, above)

@@ -151,7 +151,6 @@ def test_the_factor_in_height_is_straight_between_known_floors_and_down_to_the_g
 @pytest.mark.slow
 def test_no_more_is_kept_than_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = realise(target())
-
     one = beam.KEPT.nbytes // (DRAWS // GROUP)
     assert 0 < one <= beam.KEPT.most
     for kept in (3 * one, one - 1):

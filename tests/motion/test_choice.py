@@ -14,10 +14,21 @@ RECORDS = Path(__file__).parents[2] / "samples" / "records"
 SWEEP = read_records(RECORDS / "made-up-sweep.csv")
 
 
-def test_select() -> None:
+def test_select(tmp_path: Path) -> None:
     assert [record.channel for record in SWEEP] == ["north", "east", "up"]
     assert select(SWEEP, "East") is select(SWEEP, "2") is select(SWEEP, " east ") is SWEEP[1]
     assert select(SWEEP[:1]) is select(SWEEP[:1], "") is select(SWEEP[:1], "1") is SWEEP[0]
+    records = read_records(RECORDS / "1103.HN2.NP.RE_a.smc")
+    assert select(records, "1") is select(records, "171") is records[0], "the number of an only channel"
+    for channel in ("west", "0", "4", "-1"):
+        message = rf"made-up-sweep\.csv has no channel '{channel}'\. It holds: north, east, up"
+        with pytest.raises(RecordError, match=message):
+            select(SWEEP, channel)
+    message = (
+        r"made-up-sweep\.csv holds 3 channels: north, east, up\. Name one of them, such as made-up-sweep\.csv#north"
+    )
+    with pytest.raises(RecordError, match=message):
+        select(SWEEP)
 
 
 def test_a_number_is_a_name_where_channels_have_numbers(tmp_path: Path) -> None:
@@ -29,27 +40,6 @@ def test_a_number_is_a_name_where_channels_have_numbers(tmp_path: Path) -> None:
     made = read_set(tmp_path, csmip_v2(*THREE))
     with pytest.raises(RecordError, match=r"made has no channel '3'\. It holds: 11, 12, 13"):
         select(made, "3")
-
-
-def test_the_number_of_an_only_channel() -> None:
-    records = read_records(RECORDS / "1103.HN2.NP.RE_a.smc")
-    assert select(records, "1") is select(records, "171") is records[0]
-
-
-@pytest.mark.parametrize("channel", ["west", "0", "4", "-1"])
-def test_select_an_unknown_channel(channel: str) -> None:
-    with pytest.raises(
-        RecordError, match=rf"made-up-sweep\.csv has no channel '{channel}'\. It holds: north, east, up"
-    ):
-        select(SWEEP, channel)
-
-
-def test_select_needs_a_channel() -> None:
-    message = (
-        r"made-up-sweep\.csv holds 3 channels: north, east, up\. Name one of them, such as made-up-sweep\.csv#north"
-    )
-    with pytest.raises(RecordError, match=message):
-        select(SWEEP)
 
 
 def read_set(folder: Path, data: bytes) -> tuple[Record, ...]:
@@ -70,28 +60,21 @@ def test_select_from_an_archive(tmp_path: Path) -> None:
     assert select(records, "chan02.v2") is select(records, "CHAN02.V2/12") is records[1]
     assert select(records, "Free field.zip/CHAN01.V2/11") is select(records, "Free Field.zip/CHAN01.V2") is records[0]
     assert select(records, "RAW.V1/11") is records[3]
-    with pytest.raises(
-        RecordError, match=r"made has 3 channels named '11'\. Name one of them: Free Field\.zip/CHAN01\.V2/11, "
-    ):
+    message = r"made has 3 channels named '11'\. Name one of them: Free Field\.zip/CHAN01\.V2/11, "
+    with pytest.raises(RecordError, match=message):
         select(records, "11")
+    records = read_set(tmp_path, zipped({"A.V2": csmip_v2(EAST), "copy/A.V2": csmip_v2(EAST)}))
+    assert select(records, "A.V2/11") is select(records, "A.V2") is records[0], "beside a folder of copies"
+    assert select(records, "copy/A.V2") is records[1]
 
 
-def test_every_name_that_is_listed_means_one_channel(tmp_path: Path) -> None:
+def test_every_name_that_is_listed_means_one_channel_and_long_lists_are_cut(tmp_path: Path) -> None:
     inner = zipped({"CHAN01.V2": csmip_v2(EAST)})
     records = read_set(tmp_path, zipped({"CHAN01.V2": csmip_v2(*THREE), "a.zip": inner, "b.zip": inner}))
     with pytest.raises(RecordError, match=r"made holds 5 channels: ") as caught:
         select(records)
     names = str(caught.value).partition("channels: ")[2].partition(". Name")[0].split(", ")
     assert [select(records, name).file for name in names] == [record.file for record in records]
-
-
-def test_a_member_beside_a_folder_of_copies_can_be_named(tmp_path: Path) -> None:
-    records = read_set(tmp_path, zipped({"A.V2": csmip_v2(EAST), "copy/A.V2": csmip_v2(EAST)}))
-    assert select(records, "A.V2/11") is select(records, "A.V2") is records[0]
-    assert select(records, "copy/A.V2") is records[1]
-
-
-def test_long_lists_are_cut(tmp_path: Path) -> None:
     many = csmip_v2(*(Signal(wave(), 90.0, number) for number in range(1, 21)))
     with pytest.raises(
         RecordError, match=r"holds 20 channels: 11, .*, 22 and 8 more\. Name one of them, such as made#11$"

@@ -1,24 +1,18 @@
 """COSMOS: volumes, units and directions, and what is said of damaged files."""
 
+from functools import partial
+
 import pytest
 
 from assess.errors import RecordError
 from assess.motion.formats import cosmos
-from assess.motion.record import Record
 from assess.units import GRAVITY
+from tests.motion.damage import changed, read_only
 from tests.motion.writers import EAST, NORTH, THREE, UP, cosmos as write
+from tests.refusals import check_refusals
 
 DATA = write(EAST)
-
-
-def read_one(data: bytes) -> Record:
-    (record,) = cosmos.FORMAT.read(data, "made")
-    return record
-
-
-def changed(data: bytes, old: bytes, new: bytes) -> bytes:
-    assert old in data
-    return data.replace(old, new, 1)
+read_one = partial(read_only, cosmos.FORMAT)
 
 
 def test_text() -> None:
@@ -45,23 +39,16 @@ def test_units(unit: str, factor: float) -> None:
     assert record.header_pfa == pytest.approx(record.file_pfa, rel=0.001)
 
 
-def test_directions_by_number() -> None:
+def test_directions_by_number_the_recorder_s_step_and_velocities_beside_accelerations() -> None:
     records = cosmos.FORMAT.read(write(*THREE, text_direction=False), "made")
     assert [(record.azimuth_deg, record.vertical) for record in records] == [(90, False), (360, False), (None, True)]
-
-
-def test_the_recorder_s_step_where_no_other_is_given() -> None:
     assert read_one(changed(DATA, b"    10.000000", b"  -999.000000")).time_step == 0.005
-
-
-def test_velocities_beside_accelerations_are_left_out() -> None:
     both = write(EAST) + write(UP, kind="Corrected velocity", unit="cm/sec(05)") + write(NORTH)
     assert [record.channel for record in cosmos.FORMAT.read(both, "made")] == ["1", "2"]
 
 
-@pytest.mark.parametrize(
-    ("data", "message"),
-    [
+def test_damage() -> None:
+    check_refusals(RecordError, read_one, [
         (b"hello", r"no line names a version of the COSMOS format\. Get the file again"),
         (write(EAST, kind="Corrected velocity"), r"the file holds corrected velocity, not accelerations\. Give"),
         (write(EAST, unit="counts(50)", factor=1e-5),
@@ -74,8 +61,4 @@ def test_velocities_beside_accelerations_are_left_out() -> None:
         (changed(DATA, b" 100 Integer", b" 100 Inteeer"), r"the header is incomplete"),
         (DATA.replace(b"    10.000000", b"     0.000000").replace(b"     0.005000", b"     0.000000"), r"step is 0 s"),
         (write(EAST, kind="Response spectra of acceleration"), r"the file holds response spectra of acceleration, not"),
-    ],
-)  # fmt: skip
-def test_damage(data: bytes, message: str) -> None:
-    with pytest.raises(RecordError, match=message):
-        read_one(data)
+    ])  # fmt: skip

@@ -10,6 +10,7 @@ from assess.errors import RecordError
 from assess.motion.formats import csmip
 from assess.motion.record import Record
 from assess.units import GRAVITY
+from tests.motion.damage import changed
 from tests.motion.writers import (
     EAST,
     NORTH,
@@ -20,14 +21,10 @@ from tests.motion.writers import (
     csmip_v2 as write_v2,
     wave,
 )
+from tests.refusals import check_refusals
 
 DEAD = Signal(np.zeros(400), 90.0, 2)
 V1, PAIRS, V2 = write_v1(EAST), write_pairs(EAST), write_v2(EAST)
-
-
-def changed(data: bytes, old: bytes, new: bytes) -> bytes:
-    assert old in data
-    return data.replace(old, new, 1)
 
 
 def with_number(data: bytes, line: int, at: int, text: bytes) -> bytes:
@@ -58,9 +55,6 @@ def test_text_that_says_little() -> None:
     record = read_one(changed(bare, b"STATION NO. 14403", b"STATION          "))
     assert (record.channel, record.location, record.azimuth_deg, record.vertical) == ("1", "", None, None)
     assert (record.station, record.start) == ("TOWN HALL", "JANUARY 17, 1994 04:31 PST")
-
-
-def test_the_recorder_s_number_where_the_building_s_is_not_given() -> None:
     record = read_one(re.sub(rb"  \(STA CHN: 11\)", b"", V2))
     assert (record.channel, record.location) == ("1", "ROOF: EAST WALL")
 
@@ -105,7 +99,7 @@ def test_old_and_new_line_ends() -> None:
     assert (read_one(V2.replace(b"\r\n", b"\r")).acceleration == unix.acceleration).all()
 
 
-def test_a_dead_channel_does_not_lose_the_others() -> None:
+def test_a_dead_channel_or_one_that_is_cut_off_does_not_lose_the_others() -> None:
     for read, write in ((csmip.VOLUME_1.read, write_v1), (csmip.VOLUME_2.read, write_v2)):
         records = read(write(EAST, DEAD, NORTH), "made")
         assert len(records) == 2
@@ -113,16 +107,10 @@ def test_a_dead_channel_does_not_lose_the_others() -> None:
             assert record.notes == (
                 "channel 2 of the file is left out: every sample is 0 m/s2: the channel holds no motion",
             )
-
-
-def test_a_channel_that_is_cut_off_does_not_lose_the_others() -> None:
     whole = write_v2(*THREE)
     records = csmip.VOLUME_2.read(whole[: whole.rindex(b"POINTS OF ACCEL") + 1000], "made")
     assert [record.channel for record in records] == ["11", "12"]
     assert re.search(r"channel 3 .*cut short: it has \d+ of the 400 data values", records[0].notes[0])
-
-
-def test_nothing_is_left() -> None:
     with pytest.raises(RecordError, match=r"^none of its 6 channels can be read: channel 1: every sample is 0 m/s2"):
         csmip.VOLUME_1.read(write_v1(*[DEAD] * 6), "made")
     many = csmip.VOLUME_1.read(write_v1(EAST, *[DEAD] * 6), "made")[0].notes
@@ -132,15 +120,13 @@ def test_nothing_is_left() -> None:
 def test_spectra_are_refused() -> None:
     data = b"RESPONSE AND FOURIER AMPLITUDE SPECTRA (79 PERIODS,  .04 -  6.5 SEC)   FOR\r\n" + V2
     assert csmip.VOLUME_2.recognises(data)
-    with pytest.raises(
-        RecordError, match=r"the file holds response spectra \(volume 3\), not accel.*\. Give volume 2 or 1"
-    ):
+    message = r"the file holds response spectra \(volume 3\), not accel.*\. Give volume 2 or 1"
+    with pytest.raises(RecordError, match=message):
         csmip.VOLUME_2.read(data, "made")
 
 
-@pytest.mark.parametrize(
-    ("data", "message"),
-    [
+def test_v1_damage() -> None:
+    check_refusals(RecordError, lambda data: csmip.VOLUME_1.read(data, "made"), [
         (b"hello", r'no line says "Uncorrected accelerogram data"\. Get the file again'),
         (V1[:1000], r"the header does not give the number of points, or their unit|cut short"),
         (V1[:4000], r"cut short: it has \d+ of the 400 data values that its header announces\. Get the file again"),
@@ -156,16 +142,11 @@ def test_spectra_are_refused() -> None:
         (changed(PAIRS, b"SEC AND G/10", b"SEC AND CM/S"), r"does not give the number of points, or their unit"),
         (changed(PAIRS, b"NO. OF POINTS =    400", b"NO. OF POINTS =      0"), r"announces 0 data values"),
         (changed(PAIRS, b"NO. OF POINTS =    400", b"NO. OF POINTS = 999999"), r"1999998 data values"),
-    ],
-)  # fmt: skip
-def test_v1_damage(data: bytes, message: str) -> None:
-    with pytest.raises(RecordError, match=message):
-        csmip.VOLUME_1.read(data, "made")
+    ])  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("data", "message"),
-    [
+def test_v2_damage() -> None:
+    check_refusals(RecordError, lambda data: csmip.VOLUME_2.read(data, "made"), [
         (b"hello", r'no line says "Corrected accelerogram"\. Get the file again'),
         (V2[:1500], r'no line says "points of accel data equally spaced at"\. Get the file again'),
         (V2[:5000], r"cut short: it has \d+ of the 400 data values that its header announces\. Get the file again"),
@@ -174,19 +155,12 @@ def test_v1_damage(data: bytes, message: str) -> None:
         (changed(V2, b"AT 0.010 SEC.", b"AT 0.0.0 SEC."), r"line 46: the time step or the unit cannot be read"),
         (changed(V2, b"UNITS: CM/SEC/SEC", b"UNITS: FURLONGS!!"), r"line 46: the time step or the unit cannot be read"),
         (with_number(V2, 47, 10, b"**********"), r"line 47: '\*+' is not a number\. Get the file again"),
-    ],
-)  # fmt: skip
-def test_v2_damage(data: bytes, message: str) -> None:
-    with pytest.raises(RecordError, match=message):
-        csmip.VOLUME_2.read(data, "made")
+    ])  # fmt: skip
 
 
-def test_a_peak_that_is_not_the_header_s_is_noted() -> None:
+def test_a_peak_that_is_not_the_header_s_is_noted_and_one_of_1_g_is_read() -> None:
     record = read_one(changed(V2, b"PEAK ACCELERATION =   138", b"PEAK ACCELERATION =   238"))
     assert record.notes == ("the header prints a peak of 238.2 cm/s2, the data have 138.2 cm/s2",)
     assert read_one(changed(V1, b"Max", b"Mix")).header_pfa is None
-
-
-def test_units() -> None:
     large = replace(EAST, acceleration=wave(peak=GRAVITY))
     assert read_one(write_v1(large)).file_pfa == pytest.approx(np.abs(large.acceleration).max(), abs=1e-5)

@@ -9,33 +9,21 @@ from tests.motion.motions import read_motion
 
 STEP = 0.005
 
-
 # --- octaves ---
 
 
-def test_octaves_by_hand() -> None:
+def test_octaves_and_their_weights_by_hand() -> None:
     np.testing.assert_allclose(octaves(), [0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8, 25.6])
-
-
-def test_their_weights_sum_to_one() -> None:
     frequencies = np.concatenate([[0.0], np.geomspace(1e-6, 1000, 5001)])
     weights = split(frequencies, octaves())
-    np.testing.assert_allclose(weights.sum(axis=0), 1.0, rtol=1e-12)
+    np.testing.assert_allclose(weights.sum(axis=0), 1.0, rtol=1e-12, err_msg="they sum to one")
     assert weights.min() >= 0
-
-
-def test_a_weight_is_one_at_its_centre_and_half_way_between() -> None:
+    # one at its centre and half way between; the first and last reach to the ends; a single octave takes all
     np.testing.assert_allclose(split(octaves(), octaves()), np.eye(9), atol=1e-12)
     np.testing.assert_allclose(split(np.array([0.8 * 2**0.5]), octaves())[3:5, 0], [0.5, 0.5])
-
-
-def test_the_first_and_last_reach_to_the_ends() -> None:
     weights = split(np.array([0.0, 0.05, 40.0, 100.0]), octaves())
     np.testing.assert_array_equal(weights[0], [1, 1, 0, 0])
     np.testing.assert_array_equal(weights[-1], [0, 0, 1, 1])
-
-
-def test_a_single_octave_takes_all() -> None:
     np.testing.assert_array_equal(split(np.array([0.0, 1.0, 100.0]), np.array([0.1])), np.ones((1, 3)))
 
 

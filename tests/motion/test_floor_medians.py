@@ -30,16 +30,12 @@ def test_the_ground_moves_as_it_does(place: float) -> None:
         assert find_medians(period, 1e-6, structure, ratio) == pytest.approx((1.0, 1.0), abs=1e-4)
 
 
-def test_its_entries_come_out() -> None:
+def test_its_entries_come_out_and_are_those_of_floors() -> None:
     table = read_table()
     periods, places = (*PERIODS, None), (*PLACES, None)
     for structure, period, place, ratio in EVERY:
         own = table[structure][periods.index(period), RATIOS.index(ratio), places.index(place)]
         assert find_medians(period, place, structure, ratio) == pytest.approx(tuple(own), rel=1e-9)
-
-
-def test_it_is_whole_and_its_numbers_are_those_of_floors() -> None:
-    table = read_table()
     assert {one.shape for one in table.values()} == {(len(PERIODS) + 1, len(RATIOS), len(PLACES) + 1, 2)}
     for values in table.values():
         assert np.isfinite(values).all()

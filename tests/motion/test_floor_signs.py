@@ -84,8 +84,8 @@ def test_floors_are_joined_by_the_most_coherent_first():
     assert signs[0, AT[1.6]] * signs[2, AT[1.6]] == -1
 
 
-def test_floors_42_and_34_of_575_market_street():
-    """Their record has a coherence of -0.96 at 0.8 to 1.6 Hz, and moves alike below 0.4 Hz."""
+def test_floors_42_34_and_25_of_575_market_street():
+    """The record of 42 and 34 has a coherence of -0.96 at 0.8 to 1.6 Hz, and moves alike below 0.4 Hz."""
     floors, step = read_floors("ad")
     found = find_coherence(floors, step)
     assert found[0, 0] == pytest.approx(1)
@@ -100,11 +100,7 @@ def test_floors_42_and_34_of_575_market_street():
     a, d = transforms[:, (frequencies >= 0.8) & (frequencies < 1.6)]
     coherence = (a * d.conj()).sum().real / np.sqrt((np.abs(a) ** 2).sum() * (np.abs(d) ** 2).sum())
     assert coherence == pytest.approx(-0.96, abs=0.005)
-
-
-def test_channels_that_point_the_other_way_have_the_other_sign():
-    """Both of the 25th floor, 45 and 225 deg: opposite wherever the floor moves as one."""
-    floors, step = read_floors("gh")
+    floors, step = read_floors("gh")  # both of the 25th, 45 and 225 deg: opposite wherever the floor moves as one
     assert (find_signs(floors, step)[0, : AT[6.4] + 1] == -1).all()
 
 
@@ -122,15 +118,12 @@ def test_turned_phases_give_common_noise_the_signs_of_the_records():
     assert (np.abs(found[clear]) > 0.4).all()
 
 
-def test_turning_keeps_amplitudes_and_is_the_sign_at_centres():
+def test_turning_keeps_amplitudes_is_the_sign_at_centres_and_keeps_the_relation_of_floors_that_both_turn():
     signs = np.array([1, -1, -1, 1, 1, -1, 1, 1, 1])
     assert turn_phases(octaves(), signs) == pytest.approx(signs)
     assert np.abs(turn_phases(np.linspace(0, 100, 5001), signs)) == pytest.approx(1)
     assert turn_phases(np.linspace(0, 100, 5001), np.ones(9, dtype=int)) == pytest.approx(1)
-
-
-def test_floors_that_both_turn_keep_their_relation():
-    """One of 1, -1, -1, 1 and one of 1, 1, 1, -1: against each other from the second octave on, also in between."""
+    # one of 1, -1, -1, 1 and one of 1, 1, 1, -1: against each other from the second octave on, also in between
     frequencies = np.geomspace(0.2, 1.6, 50)
     one, other = (turn_phases(frequencies, [*signs, *[signs[-1]] * 5]) for signs in ((1, -1, -1, 1), (1, 1, 1, -1)))
     assert one[frequencies > 0.2] * other[frequencies > 0.2].conj() == pytest.approx(-1)

@@ -17,7 +17,6 @@ from assess.units import GRAVITY
 LOW, MEDIUM, HIGH, VERY_HIGH = RiskClass
 FORMULA, SIMULATION = adopted_formula().key, simulation().key
 
-
 LARGEST = math.exp(3 * math.sqrt(0.4**2 + 0.25**2 + 0.05**2 + 0.02**2 + (0.05 / 0.5) ** 2))
 """Of the earthquake, the peak of its motion, and the base, the height and the centre of gravity of the piece."""
 
@@ -197,18 +196,15 @@ def test_cases_do_not_touch_each_other(given):
 
 
 def governing(*probabilities, items=None, pfa=None, basis=None):
-    """Return which case governs, item by item."""
-    item = np.zeros(len(probabilities), dtype=np.intp) if items is None else np.array(items)
-    peaks = np.ones(len(probabilities)) if pfa is None else np.array(pfa)
-    return find_governing(_adoption(np.array(probabilities, dtype=np.float64), basis), item, peaks * GRAVITY).tolist()
-
-
-def _adoption(probability, basis=None):
-    """Return an adoption of which only the chance and the basis are told."""
-    unknown, no = np.full(probability.size, np.nan), np.zeros(probability.size, dtype=np.bool_)
-    classes = np.zeros(probability.size, dtype=np.int64)
-    given = np.array([BASES.index(one) for one in basis or ["simulated"] * probability.size], dtype=np.int8)
-    return Adoption(probability, unknown, unknown, classes, classes, given, no, no, no, unknown)
+    """Return which case governs, item by item, of adoptions of which only the chance and the basis are known."""
+    count = len(probabilities)
+    item = np.zeros(count, dtype=np.intp) if items is None else np.array(items)
+    peaks = np.ones(count) if pfa is None else np.array(pfa)
+    unknown, no, classes = np.full(count, np.nan), np.zeros(count, dtype=np.bool_), np.zeros(count, dtype=np.int64)
+    bases = np.array([BASES.index(one) for one in basis or ["simulated"] * count], dtype=np.int8)
+    chances = np.array(probabilities, dtype=np.float64)
+    adoption = Adoption(chances, unknown, unknown, classes, classes, bases, no, no, no, unknown)
+    return find_governing(adoption, item, peaks * GRAVITY).tolist()
 
 
 def test_the_larger_chance_governs_then_the_larger_pfa_then_the_first():

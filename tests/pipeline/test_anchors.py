@@ -150,13 +150,10 @@ def test_brackets_that_hold_a_piece_of_unknown_width():
     assert weighed["a"].is_anchored
 
 
-def test_a_blank_bracket_height_is_assumed():
+def test_a_blank_bracket_height_is_assumed_and_pfa_scatters():
     found = anchor_of(assess_one(bracket_height=None))
     assert (found.bracket_height_cm, found.is_height_assumed) == (pytest.approx(162), True)
     assert found.tension_kn == pytest.approx(0.24 * 1.7 / 1.62)
-
-
-def test_the_scatter_of_pfa():
     found = anchor_of(assess_one({"motion_uncertainty": 0.4}))
     for k, tension in ((0.6 * 0.670320, found.tension_low_kn), (0.6 * 1.491825, found.tension_high_kn)):
         assert tension == pytest.approx(1.2 * (k * 0.9 - 0.2) / 1.7, abs=1e-5)

@@ -140,7 +140,7 @@ def test_the_users_own_motions_have_to_be_scaled_to_the_floors(tmp_path):
 # --- the building
 
 
-def test_the_building_adds_up_its_free_standing_pieces(several):
+def test_the_building_its_route_and_its_room_add_up_free_standing_pieces(several):
     results, rows = rows_of(several)
     found = results.annual
     assert rows[4] is None, "it cannot rock: it was not simulated"
@@ -160,6 +160,10 @@ def test_the_building_adds_up_its_free_standing_pieces(several):
     assert found.factors[-1] == pytest.approx(3.0 / 0.15 * np.exp(3 * 0.4)), (
         "beyond the end of the curve, as it scatters"
     )
+    (route,), (room,) = results.route_tables.routes, results.route_tables.rooms
+    assert route.annual.rate == pytest.approx(rows[0].rate, rel=0.3), "in its own 60 draws; its chance is by all alike"
+    assert room.annual == route.annual
+    assert route.annual_if_anchors_fail is None
 
 
 def test_pieces_that_were_not_simulated_make_sums_lower_bounds(tmp_path):
@@ -171,14 +175,6 @@ def test_pieces_that_were_not_simulated_make_sums_lower_bounds(tmp_path):
     assert results.annual.not_evaluated == 1
     assert results.annual.is_lower_bound
     assert results.annual.life_safety.at_least
-
-
-def test_a_route_and_a_room_are_lost_as_often_as_the_piece_that_blocks_them_falls(several):
-    results, rows = rows_of(several)
-    (route,), (room,) = results.route_tables.routes, results.route_tables.rooms
-    assert route.annual.rate == pytest.approx(rows[0].rate, rel=0.3), "in its own 60 draws; its chance is by all alike"
-    assert room.annual == route.annual
-    assert route.annual_if_anchors_fail is None
 
 
 def test_rates_are_lower_bounds_where_the_motions_may_be_too_weak(tmp_path):

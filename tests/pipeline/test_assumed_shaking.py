@@ -36,14 +36,11 @@ def test_every_floor_follows_a_beam_on_its_median_pga_and_pgv():
     assert find_shaking(demands) is SEVEN
 
 
-def test_a_jma_class_gives_pgv_and_pga_is_drawn():
+def test_a_jma_class_gives_pgv_and_pga_is_drawn_and_a_chosen_code_starts_from_it_too():
     inventory = _read(shaking="JMA 5+, upper")
     motion, shaking = find_ground(inventory).motion, SHAKINGS["JMA 5+, upper"]
     assert (motion.pga, motion.pgv) == (None, shaking.pgv)
     assert build_demands(inventory, "as filled")["1", "X"][0].pfa == pytest.approx(shaking.pga)
-
-
-def test_a_chosen_code_starts_from_it_too():
     demands = build_demands(_read(), "NTC 2018")
     assert demands["2", "X"][0].pfa == pytest.approx(2 * SEVEN.pga)
     assert demands["2", "X"][0].label == "Shaking MMI VII, NTC 2018"

@@ -93,7 +93,6 @@ def test_a_record_at_grade_comes_first_and_passes_through_the_beam():
 
 
 def _factor(demands, name, ground):
-    """Return by how much the peaks of a floor differ from those of the beam."""
     one = _x(demands, name)
     return _peaks(one) / _find(one.height_ratio, ground)
 
@@ -157,14 +156,11 @@ def test_scaled_demands_keep_their_proportions():
 # --- what is not known
 
 
-def test_a_floor_without_elevation_has_a_drawn_height():
+def test_what_is_not_known_of_a_floor_or_its_building_is_drawn():
     one = _x(_demands(Floor(row=2, floor="A"), ground_pga=3.0), "A")
     assert (one.height_ratio, one.flags) == (None, ("drawn_building", "unknown_height"))
     assert one.pfa == pytest.approx(3.0 * find_medians(0.8, None, "unknown", RATIO)[0])
     assert not one.drawn.is_unknown
-
-
-def test_of_an_unknown_building_everything_is_drawn():
     bare = {"period": None, "height": None}
     one = _x(_demands(Floor(row=2, floor="A"), ground_pga=3.0, **bare), "A")
     assert one.flags == ("drawn_building", "unknown_building")
@@ -188,20 +184,15 @@ def test_of_an_unknown_building_everything_is_drawn():
         ((ROOF,), {"shaking": SEVEN}, None, 0.88),
         ((ROOF,), {"shaking": SEVEN}, 0.2, 0.88),
         ((ROOF,), {"shaking": SEVEN}, 1.0, 1.0),
-        *(((ROOF,), {"ground_pga": 3.0}, given, given or 0.0) for given in (None, 0.2)),
-        *(((ROOF,), {"sds": 9.0}, given, given or 0.0) for given in (None, 0.2)),
+        *(((ROOF,), building, given, given or 0.0)
+          for building in ({"ground_pga": 3.0}, {"sds": 9.0}, {"scenario": "NTC 2018", "ground_pga": 3.0})
+          for given in (None, 0.2)),
         *(((_at(9.0, "R", pfa={"X": 3.0}),), {"shaking": SEVEN}, given, given or 0.0) for given in (None, 0.2)),
     ],
 )  # fmt: skip
 def test_by_how_much_a_floor_scatters(floors, building, given, used):
-    """Drawn motions scatter by themselves; what gives the ground adds its own."""
+    """Drawn motions scatter by themselves; what gives the ground adds its own; a code adds none unless told."""
     assert _x(_demands(*floors, motion_uncertainty=given, **building), "R").dispersion == used
-
-
-@pytest.mark.parametrize("given", [None, 0.2])
-def test_by_a_code_a_floor_does_not_scatter_unless_told(given):
-    one = _x(_demands(ROOF, scenario="NTC 2018", ground_pga=3.0, motion_uncertainty=given), "R")
-    assert one.dispersion == (given or 0.0)
 
 
 # --- what is said of the ground, and what comes of it
@@ -236,13 +227,9 @@ def _simulate(inventory, runs):
 
 
 @pytest.mark.slow
-def test_at_one_pga_a_faster_ground_topples_more():
+def test_at_one_pga_a_faster_ground_topples_more_and_draw_k_is_the_same_however_many_there_are():
     slow, fast = (_simulate(_read(ground_pga=0.4, ground_pgv=pgv), 50).fell.mean() for pgv in (12, 120))
     assert slow + 0.2 < fast
-
-
-@pytest.mark.slow
-def test_draw_k_is_the_same_however_many_there_are():
     inventory = _read(ground_pga=0.4)
     few, many = (_simulate(inventory, runs) for runs in (30, 70))
     np.testing.assert_array_equal(few.rotation, many.rotation[:, :30])

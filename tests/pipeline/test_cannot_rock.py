@@ -66,7 +66,6 @@ def pieces_and_building(floor, beta):
 
 
 def count_falls(items, floor, building, draws):
-    """Return the assessment of pieces by so many draws, and the falls on the floor."""
     found = compute(read(items, [floor], RECORDS, **building), Settings(verify="all", runs=draws))
     return found, {int(joint.fell.sum()) for joint in found.joints.values()}
 

@@ -41,18 +41,13 @@ def assessed(settings=CITY, **building):
 # --- which earthquake ---
 
 
-def test_a_building_alone_takes_one_number_for_every_place():
+def test_which_earthquake_a_building_draws():
+    """Alone one number for every place; in a city that of its place; the shared part is the map's where it tells."""
     found = find_earthquakes(inventory(**PLACE), Settings())
     assert found == Earthquakes(place=None, shared=SCATTERS["PGA"].shared)
-
-
-def test_a_building_of_a_city_draws_by_its_place():
     found = find_earthquakes(inventory(**PLACE), CITY)
     assert found.place == (37.79, -122.40)
     assert find_earthquakes(inventory(), CITY).place is None
-
-
-def test_the_share_of_all_places_is_that_of_the_map_where_it_tells():
     found = find_earthquakes(inventory(MAP, **PLACE), CITY)
     assert found == Earthquakes(place=(37.79, -122.40), shared=0.2)
     blank = find_earthquakes(inventory(replace(MAP, shared=None), **PLACE), CITY)
@@ -88,12 +83,9 @@ def test_scenarios_that_serve_no_floor_decide_nothing():
 # --- how many draws ---
 
 
-@pytest.mark.parametrize(("scenarios", "runs"), [(0, 200), (1, 200), (3, 201), (150, 300), (200, 200), (777, 777)])
-def test_every_scenario_counts_alike_in_at_least_200_draws(scenarios, runs):
-    assert choose_runs(scenarios) == runs
-
-
-def test_a_number_of_draws_that_was_asked_for_has_to_fit():
+def test_every_scenario_counts_alike_in_at_least_200_draws_or_as_many_as_asked_for():
+    for scenarios, runs in ((0, 200), (1, 200), (3, 201), (150, 300), (200, 200), (777, 777)):
+        assert choose_runs(scenarios) == runs, scenarios
     assert choose_runs(0, 64) == 64
     assert choose_runs(0, "auto") == "auto"
     assert choose_runs(32, 64) == 64
@@ -101,9 +93,6 @@ def test_a_number_of_draws_that_was_asked_for_has_to_fit():
         choose_runs(32, 100)
     with pytest.raises(InputError, match="runs is auto, expected a multiple of 32"):
         choose_runs(32, "auto")
-
-
-def test_more_scenarios_than_draws_are_refused():
     with pytest.raises(InputError, match=r"5,001 scenarios, expected at most 5,000\. Keep fewer events"):
         choose_runs(5001)
 

@@ -10,7 +10,7 @@ from typing import Any
 import openpyxl
 import pytest
 
-from assess.pipeline.corrected import Corrected, correct_workbook
+from assess.pipeline.corrected import correct_workbook
 from assess.pipeline.live_values import live_values, with_live
 from assess.workbook.example import example_content
 from assess.workbook.plain_rows import column_letters
@@ -33,14 +33,12 @@ HABITS: dict[str, dict[str, Any]] = {
 
 @cache
 def uncorrected() -> bytes:
-    """Return the example of `assess new`."""
     with tempfile.TemporaryDirectory() as folder:
         write_workbook(Path(folder) / "book.xlsx", with_live(example_content()))
         return (Path(folder) / "book.xlsx").read_bytes()
 
 
 def example(path: Path, changes: dict[str, dict[str, Any]]) -> Path:
-    """The example of `assess new` with some cells as people type them."""
     path.write_bytes(edited(uncorrected(), changes))
     return path
 
@@ -50,18 +48,14 @@ def list_formulas(data: bytes, sheet: str) -> list[str]:
     return [f"{column_letters(at)}{row}" for row, at in sorted(marks.formulas)]
 
 
-def stored(done: Corrected, path: Path) -> dict[tuple[str, str], Any]:
-    path.write_bytes(done.inventory.data or b"")
-    return stored_cells(path)
-
-
 @pytest.mark.slow
-def test_the_corrections_are_in_the_workbook_and_nothing_else_is(tmp_path: Path) -> None:
+def test_the_corrections_are_in_the_workbook_and_nothing_else_is_nor_left_to_correct(tmp_path: Path) -> None:
     path = example(tmp_path / "book.xlsx", HABITS)
     done = correct_workbook(path)
     typed = {sheet: set(cells) - {WRONG} for sheet, cells in HABITS.items()}
     assert {sheet: {one.cell for one in done.changed if one.sheet == sheet} for sheet in typed} == typed
-    found, before = stored(done, tmp_path / "out.xlsx"), stored_cells(path)
+    (tmp_path / "out.xlsx").write_bytes(done.inventory.data or b"")
+    found, before = stored_cells(tmp_path / "out.xlsx"), stored_cells(path)
     assert [found["Items", cell] for cell in (BREADTH, WIDTH, HEIGHT, SECOND, ANCHORED)] == [30, 80, 200, 200, "no"]
     assert found["Floors", PFA] == 0.3
     formulas = {(sheet, cell) for sheet in ("Items", "Lists") for cell in list_formulas(path.read_bytes(), sheet)}
@@ -70,12 +64,6 @@ def test_the_corrections_are_in_the_workbook_and_nothing_else_is(tmp_path: Path)
     sheets = openpyxl.load_workbook(path).sheetnames
     numbers = {f"xl/worksheets/sheet{1 + sheets.index(name)}.xml" for name in ("Items", "Floors", "Lists")}
     assert changed_parts(path.read_bytes(), done.inventory.data or b"") == numbers
-
-
-@pytest.mark.slow
-def test_corrected_once_there_is_nothing_left_to_correct(tmp_path: Path) -> None:
-    done = correct_workbook(example(tmp_path / "book.xlsx", HABITS))
-    (tmp_path / "out.xlsx").write_bytes(done.inventory.data or b"")
     again = correct_workbook(tmp_path / "out.xlsx")
     assert (again.changed, again.kept) == ((), ())
     assert again.inventory.data == done.inventory.data

@@ -50,15 +50,12 @@ def test_the_scenario_chooses_the_source(scenario, source):
     assert _one(demands, "1", "X").source == source
 
 
-def test_one_axis_serves_both_and_says_so():
+def test_one_axis_serves_both_and_says_so_and_parallel_records_all_stand():
     floor = Floor(row=2, floor="1", elevation=3.0, pfa={"Y": 2.0}, pfv={"Y": 0.3})
     demands = build_demands(_inventory(floor), "as filled")
     borrowed = _one(demands, "1", "X")
     assert (borrowed.axis, borrowed.pfa, borrowed.pfv, borrowed.flags) == ("X", 2.0, 0.3, ("one_axis_only",))
     assert _one(demands, "1", "Y").flags == ()
-
-
-def test_parallel_records_all_stand():
     floor = Floor(row=2, floor="1", records={"X": (_record(SMC), _record(CORRECTED))})
     demands = build_demands(_inventory(floor), "as filled")
     assert [demand.name for demand in demands["1", "X"]] == [SMC.name, CORRECTED.name]
@@ -219,12 +216,9 @@ def test_height_ratio(z, height, ratio):
     assert _one(build_demands(inventory, "ASCE 7-16"), "1", "X").height_ratio == pytest.approx(ratio)
 
 
-def test_a_building_of_the_ground_floor_alone():
+def test_a_building_of_the_ground_floor_alone_and_ductility_which_reduces_asce_7_22_alone():
     inventory = _inventory(Floor(row=2, floor="G", elevation=0.0), ground_pga=2.0)
     assert _one(build_demands(inventory, "as filled"), "G", "X").pfa == 2.0
-
-
-def test_ductility_reduces_asce_7_22_alone():
     inventory = _inventory(ROOF, ground_pga=1.0)
     found = [
         _one(build_demands(inventory, scenario, ductility_reduction=1.4), "R", "X").pfa

@@ -34,17 +34,9 @@ ITEMS = [
     {"item": "held", "floor": "1", "axis": "X", "anchored": "yes", **FAR, **CABINET},
     {"item": "square", "floor": "1", **FAR, **CABINET | {"width": 40}},
     {"item": "upstairs", "floor": "2", "axis": "X", "route": "B", "edge_distance": 0, **CABINET},
-    {
-        "item": "chest",
-        "floor": "2",
-        "axis": "X",
-        "route": "B",
-        "edge_distance": 9,
-        "breadth": 85,
-        "width": 150,
-        "height": 90,
-    },
-]
+    {"item": "chest", "floor": "2", "axis": "X", "route": "B", "edge_distance": 9, "breadth": 85, "width": 150,
+     "height": 90},
+]  # fmt: skip
 FLOORS = [{"floor": "1", "pfa_x": 0.45, "pfa_y": 0.4}, {"floor": "2", "pfa_x": 0.5}]
 
 
@@ -75,7 +67,7 @@ def test_pieces_of_a_row_fall_together_and_anchored_ones_are_not_counted():
     assert set(sums.falls.tolist()) == {0, 4}
 
 
-def test_routes_and_their_people_are_counted_in_each_draw(run):
+def test_routes_and_their_people_the_most_of_any_segment_are_counted_in_each_draw(run):
     sums, tables = sum_draws(*run), run[1].route_tables
     assert sums.joint_routes == ("A", "B", "C")
     by_route = {one.route: one.blocked.probability for one in tables.routes}
@@ -87,20 +79,19 @@ def test_routes_and_their_people_are_counted_in_each_draw(run):
     assert sums.people_expected == pytest.approx(35 * by_route["A"] + 12 * by_route["B"])
     assert sums.people_blocked.mean() == pytest.approx(sums.people_expected)
     assert (sums.people_apart, sums.routes_apart, sums.people_not_known) == (0, 0, 0)
-
-
-def test_people_of_a_route_are_the_most_of_any_segment_not_their_sum(run):
-    tables = run[1].route_tables
     assert [count_people(tables, one) for one in tables.routes] == [35, 12, 5]
 
 
-def test_without_simulation_there_are_no_draws_but_expected_numbers():
+def test_without_simulation_or_with_draws_of_its_own_for_each_piece_there_are_expected_numbers_alone():
     assessment, results = assessed(Settings(verify="none"))
     sums, tables = sum_draws(assessment, results), results.route_tables
     assert sums.falls is sums.people_blocked is sums.routes_blocked is None
     assert sums.routes_expected == pytest.approx(tables.blocked_routes_expected)
     assert sums.routes_apart == sums.routes_expected > 0
     assert sums.people_apart == sums.people_expected > 0
+    sums = sum_draws(*assessed(Settings(runs="auto", seed=3)))
+    assert sums.falls is None
+    assert sums.people_expected > 0
 
 
 def test_a_route_with_a_piece_that_is_not_confirmed_has_no_joint_outcome():
@@ -112,12 +103,6 @@ def test_a_route_with_a_piece_that_is_not_confirmed_has_no_joint_outcome():
     assert "C" in sums.joint_routes
     known = {one.route for one in results.route_tables.routes if one.state != "not known"}
     assert sums.people_not_known == sum({"A": 35, "B": 12, "C": 5}[one] for one in {"A", "B", "C"} - known)
-
-
-def test_a_number_of_draws_of_its_own_for_each_piece_gives_no_sums_by_draw():
-    sums = sum_draws(*assessed(Settings(runs="auto", seed=3)))
-    assert sums.falls is None
-    assert sums.people_expected > 0
 
 
 def test_ideal_runs_count_verdicts_without_uncertainty():

@@ -27,7 +27,6 @@ def chances(items, floors, folder=None, **building):
 
 @pytest.fixture(scope="module")
 def by_map(tmp_path_factory):
-    """Chances by the map, whose sigma of PGV rules."""
     folder = tmp_path_factory.mktemp("school")
     fields = {"PGA": ("pctg", 100 * PGA), "PGV": ("cms", PGV), "STDPGA": ("", SIGMA_PGA), "STDPGV": ("", SIGMA_PGV)}
     spread = {name: (unit, (value,) * 4) for name, (unit, value) in fields.items()}

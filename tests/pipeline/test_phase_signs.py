@@ -147,13 +147,15 @@ FLOORS = [{"floor": "2", "record_x": "both.csv#top"}, {"floor": "1", "record_x":
           "pfa_x": 0.1}]  # fmt: skip
 
 
-def test_channels_of_one_file_are_on_one_clock(tmp_path):
+def test_channels_of_one_file_are_on_one_clock_but_one_floor_alone_has_no_sign(tmp_path):
     write_table(tmp_path / "both.csv", AGAINST)
     _, signs = small(tmp_path, FLOORS)
     assert set(signs["2", "X"]) == {1}
     assert signs["1", "X"][AT[0.8]] == -1
     assert (signs["0", "X"], signs["0", "Y"]) == (None, None)
     assert (signs["2", "Y"], signs["1", "Y"]) == (None, None), "no record along Y"
+    _, signs = small(tmp_path, [{"floor": "2", "record_x": "both.csv#top; both.csv#middle"}])
+    assert set(signs.values()) == {None}
 
 
 @pytest.mark.parametrize("factor", [1.0, 2.0])
@@ -181,12 +183,6 @@ def test_files_that_show_no_common_clock_have_no_sign(tmp_path):
     for name, values in AGAINST.items():
         write_table(tmp_path / f"{name}.csv", {"a": values}, "# start: 2020-01-01 10:20:30.00", "# event: one")
     assert small(tmp_path, floors)[1]["1", "X"][AT[0.8]] == -1
-
-
-def test_one_floor_alone_has_no_sign(tmp_path):
-    write_table(tmp_path / "both.csv", AGAINST)
-    _, signs = small(tmp_path, [{"floor": "2", "record_x": "both.csv#top; both.csv#middle"}])
-    assert set(signs.values()) == {None}
 
 
 def test_what_shows_a_common_clock():

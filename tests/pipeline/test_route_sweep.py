@@ -27,8 +27,6 @@ CABINET = {
     "item": "a1", "floor": "1", "breadth": 40, "width": 80, "height": 180, "axis": "X", "route": "A", "edge_distance": 0
 }  # fmt: skip
 """It leaves nothing of the corridor once it has fallen."""
-
-
 EXACT = {"motion_uncertainty": 0, "piece_uncertainty": "no"}
 """Nothing is uncertain but the phases of the motions."""
 SLOW = {"record_x": "slow.csv"}

@@ -48,13 +48,10 @@ def simulated(results):
     return {one.item.item: one.governing.simulation for one in results}
 
 
-def test_the_draws_of_others_do_not_change(measured, mixed):
+def test_the_draws_of_others_do_not_change_and_a_model_counts_as_measured(measured, mixed):
     before, after = simulated(measured), simulated(mixed)
     assert [name for name in NAMES if before[name] != after[name]] == ["two"]
     assert before["two"].ideal == after["two"].ideal, "as given it is the same piece"
-
-
-def test_a_model_counts_as_measured(measured):
     assert simulated(run(pieces(sizes_from="model"))) == simulated(measured)
 
 
@@ -78,18 +75,9 @@ def test_the_curve_of_a_scanned_piece_is_wider():
     assert wide[0].curve.dispersion > usual[0].curve.dispersion
 
 
-def test_a_weak_floor_may_rock_it():
+def test_a_weak_floor_may_rock_it_and_pieces_are_counted_by_quantity():
     """0.65 of B/H 0.25 is 0.1625 g; 0.0458 g times 3.48 is 0.159 g, times 3.60, as sizes are less certain, 0.165 g."""
     floors = [{"floor": "1", "pfa_x": 0.0458, "pfa_y": 0.0458}]
     found = rows.assessed(pieces("two"), floors, motion_uncertainty=0.4)
     assert [one.adopted.can_rock for one in found] == [False, True, False, False]
-
-
-# --- what is counted ---
-
-
-def test_pieces_are_counted_by_quantity():
     assert count_scanned(run(pieces("two", "three", quantity=5), Settings(verify="none"))) == 10
-
-
-# --- the column ---

@@ -78,15 +78,13 @@ def test_floors_without_a_record_share_their_beams_and_each_is_as_alone(swung):
 
 
 @pytest.mark.slow
-def test_another_building_before_changes_nothing(swung):
+def test_another_building_before_changes_nothing_and_t1_is_not_rounded_into_one(swung):
     first = chances(read({"floor": "1", "pfa_x": 0.4}))
     beam.KEPT.forget()
     chances(read({"floor": "9", "pfa_x": 0.8}, period=1.0))
     np.testing.assert_array_equal(chances(read({"floor": "1", "pfa_x": 0.4})), first)
-
-
-@pytest.mark.slow
-def test_t1_is_not_rounded_into_one(swung):
+    swung.clear()
+    beam.KEPT.forget()
     chances(read({"floor": "1", "pfa_x": 0.4}))
     once = len(swung)
     chances(read({"floor": "1", "pfa_x": 0.8}))

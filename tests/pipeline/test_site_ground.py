@@ -47,15 +47,12 @@ def test_floors_follow_a_beam_on_the_median_of_the_map():
     assert roof.flags == ("drawn_building", "shakemap")
 
 
-def test_it_comes_after_sds_and_before_shaking():
+def test_it_comes_after_ground_pgv_and_sds_and_before_shaking():
     assert find_ground(_read(sds=1.0)).site is None
     with_both = _read(shaking="MMI X, extreme")
     assert find_ground(with_both).shaking is None
     assert find_ground(with_both).pga == pytest.approx(PGA, rel=1e-3)
     assert "Shaking is not used: a ShakeMap gives the ground motion." in _messages(with_both)
-
-
-def test_a_ground_pgv_comes_before_its_own():
     ground = find_ground(_read(ground_pgv=10)).motion
     assert (ground.pga, ground.pgv) == pytest.approx((PGA, 0.1), rel=1e-3)
 
@@ -69,14 +66,11 @@ def test_its_scatter_adds_to_the_buildings_own(own, expected):
     assert set(compute(inventory, UNVERIFIED).cases.dispersion.tolist()) == {one.dispersion}
 
 
-def test_where_no_floor_follows_it_nothing_is_added_and_a_note_says_so():
+def test_floors_with_a_motion_of_their_own_keep_it_and_where_none_follows_it_nothing_is_added():
     floors = [one | {"pfa_x": 0.4} for one in FLOORS]
     inventory = _read(floors, motion_uncertainty=0.2)
     assert set(compute(inventory, UNVERIFIED).cases.dispersion.tolist()) == {0.2}
     assert "The ShakeMap grid.xml is not used: every floor has a motion of its own." in _messages(inventory)
-
-
-def test_floors_with_a_motion_of_their_own_keep_it():
     inventory = _read([FLOORS[0] | {"elevation": 3, "pfa_x": 0.4}, FLOORS[1]])
     demands = build_demands(inventory, "as filled")
     assert demands["1", "X"][0].source == "given"

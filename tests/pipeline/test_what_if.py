@@ -9,6 +9,7 @@ from assess.errors import SettingsError
 from assess.pipeline.anchors import anchor_named, spell_names
 from assess.settings import Settings
 from tests.pipeline.rows import read_sheets
+from tests.refusals import check_refusals
 from tests.report import routed
 
 SETTINGS = Settings(runs=60)
@@ -54,21 +55,17 @@ def test_names_are_kept_as_the_workbook_spells_them_and_once(inventory):
     assert [one.item.item for one in results if one.is_anchored] == ["Big-A", "held"]
 
 
-def test_an_item_that_is_anchored_already_gets_a_note(inventory):
+def test_an_item_that_is_anchored_already_gets_a_note_and_a_weak_bracket_is_taken_to_hold(inventory):
     held = replace(inventory, items=(replace(inventory.items[0], anchored="yes"), *inventory.items[1:]))
     name, other = (one.item for one in inventory.items[:2])
     noted = anchor_named(held, [name, other]).problems[len(held.problems) :]
     assert [str(one) for one in noted] == [f"Items: Item {name!r} is anchored already: its anchor is taken to hold."]
-
-
-def test_a_bracket_that_is_too_weak_is_taken_to_hold(inventory):
-    name = inventory.items[0].item
     weak = replace(inventory, items=(replace(inventory.items[0], bracket_capacity=1.0), *inventory.items[1:]))
     assert anchor_named(weak, [name]).items[0].bracket_capacity is None
 
 
 def test_what_cannot_be(inventory):
-    for anchor, message in (
+    cases = (
         ("clam", r"anchor: there is no item 'clam' in Items\. Did you mean 'calm'\?"),
         ("first:0", r"anchor is 'first:0', expected names of items"),
         ("first:9999", r"anchor: first:9,999 is more than the \d+ entries"),
@@ -79,6 +76,6 @@ def test_what_cannot_be(inventory):
         ("", r"anchor is '', expected names of items"),
         ("calm,,tall", r"anchor is 'calm,,tall', expected"),
         (1.5, r"anchor is 1\.5, expected"),
-    ):
-        with pytest.raises(SettingsError, match=message):
-            assess.run(inventory, Settings(verify="none"), anchor=anchor, figures=False)
+    )
+    verify = Settings(verify="none")
+    check_refusals(SettingsError, lambda anchor: assess.run(inventory, verify, anchor=anchor, figures=False), cases)
