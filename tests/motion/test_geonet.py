@@ -7,6 +7,7 @@ from assess.errors import RecordError
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.motion.formats import geonet
 from tests.motion.writers import EAST, THREE, Signal, geonet as write, wave
+from tests.refusals import check_refusals
 
 
 @pytest.mark.parametrize("corrected", [False, True])
@@ -18,11 +19,8 @@ def test_header(corrected: bool) -> None:
     assert record.start == "2016 November 13 11:02:56 UT"
     assert (record.time_step, record.notes) == (0.01, ())
     assert record.header_pfa == pytest.approx(record.file_pfa, abs=1e-4)
-
-
-def test_quadrants() -> None:
     (record,) = geonet.FORMAT.read(write(Signal(wave(), 242.0)), "made")
-    assert (record.channel, record.azimuth_deg) == ("S62W", 242.0)
+    assert (record.channel, record.azimuth_deg) == ("S62W", 242.0), "by quadrants"
 
 
 def test_a_dead_component_does_not_lose_the_others() -> None:
@@ -37,9 +35,8 @@ def test_a_dead_component_does_not_lose_the_others() -> None:
 DATA, RAW = write(EAST), write(EAST, corrected=False)
 
 
-@pytest.mark.parametrize(
-    ("data", "message"),
-    [
+def test_damage() -> None:
+    check_refusals(RecordError, lambda data: geonet.FORMAT.read(data, "made"), [
         (b"hello", r'no line says "accelerogram"\. Get the file again'),
         (DATA[:600], r"line \d+: number \d is missing\. Get the file again"),
         (DATA.replace(b"     400", b"     x00", 1), r"line 20: number 4 is missing"),
@@ -49,8 +46,4 @@ DATA, RAW = write(EAST), write(EAST, corrected=False)
         (RAW.replace(b"in units of 1.00", b"in units of 0.00", 1), r"line 11: the unit cannot be read"),
         (DATA[:4000], r"cut short: it has \d+ of the 400 data values that its header announces"),
         (DATA.replace(b"\r\n     0.0", b"\r\n    13x8", 1), r"line 27: '13x8' is not a number\. Get the file again"),
-    ],
-)
-def test_damage(data: bytes, message: str) -> None:
-    with pytest.raises(RecordError, match=message):
-        geonet.FORMAT.read(data, "made")
+    ])  # fmt: skip

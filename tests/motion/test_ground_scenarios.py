@@ -12,6 +12,7 @@ import pytest
 from assess.errors import InputError
 from assess.motion.ground_scenarios import read_scenarios
 from assess.units import GRAVITY
+from tests.refusals import check_refusals
 
 SITES = "site_id,lon,lat\n0,-122.40,37.80\n1,-122.20,37.80\n"
 VALUES = "site_id,event_id,gmv_PGA\n0,0,0.1\n0,1,0.2\n0,2,0.4\n1,0,0.3\n1,1,0.3\n1,2,0.3\n"
@@ -60,20 +61,16 @@ def test_sites_may_be_named_by_texts(tmp_path):
     assert read_scenarios(_write(tmp_path, values, sites)).at(37.8, -122.4).pga == pytest.approx(0.2 * GRAVITY)
 
 
-@pytest.mark.parametrize("latitude", [37.8, 38.1])
-def test_a_far_site_is_warned_of(tmp_path, latitude):
-    cautions = read_scenarios(_write(tmp_path)).at(latitude, -122.4).cautions
-    far = ("the nearest site of the scenarios is 33 km from the building",)
-    assert cautions == (far if latitude > 38 else ())
-
-
-def test_a_place_beyond_50_km_is_not_covered(tmp_path):
+def test_a_far_site_is_warned_of_and_one_beyond_50_km_does_not_cover_a_place(tmp_path):
+    scenarios = read_scenarios(_write(tmp_path))
+    assert scenarios.at(37.8, -122.4).cautions == ()
+    assert scenarios.at(38.1, -122.4).cautions == ("the nearest site of the scenarios is 33 km from the building",)
     match = (
         r"^gmf-data\.csv: the scenarios do not cover latitude 38\.5000, longitude -122\.4000: their nearest site is "
         r"78 km away, expected at most 50 km\. Check Latitude and Longitude, or compute the fields for sites near"
     )
     with pytest.raises(InputError, match=match):
-        read_scenarios(_write(tmp_path)).at(38.5, -122.4)
+        scenarios.at(38.5, -122.4)
 
 
 def test_one_scenario_alone_or_equal_ones_do_not_scatter(tmp_path):
@@ -107,50 +104,38 @@ def test_it_travels_by_its_folder_and_hash(tmp_path):
         pickle.loads(packed)
 
 
-BAD_VALUES = {
-    "zero": (VALUES.replace("0.4", "0.0"), r"gmf-data\.csv: line 5: gmv_PGA is 0, expected above 0 and at most 10 g"),
-    "negative": (VALUES.replace("0.4", "-0.4"), "line 5: gmv_PGA is -0.4"),
-    "NaN": (VALUES.replace("0.4", "nan"), "line 5: gmv_PGA is nan"),
-    "in cm/s2": (VALUES.replace("0.4", "392"), "line 5: gmv_PGA is 392"),
-    "a text": (VALUES.replace("0.4", "high"), "line 5: 'high' is not a number"),
-    "cut off in a row": (VALUES[:-6], "the last line has no end: the file is cut off"),
-    "cut off before a cell": (VALUES[:-4].rstrip() + "\n", "line 8: '' is not a number"),
-    "a cell too many": (VALUES.replace("0.4", "0.4,1"), "line 5: the number of cells is 4, but there are 3 headings"),
-    "no PGA": (VALUES.replace("gmv_PGA", "gmv_PGV"), "the column gmv_PGA is missing"),
-    "no events": (VALUES.replace("event_id", "rupture"), "the column event_id is missing"),
-    "no sites": (
-        VALUES.replace("site_id", "place"),
-        r"neither site_id nor custom_site_id is a column of both .* sitemesh\.csv",
-    ),
-    "an unknown site": (VALUES.replace("\n1,2,", "\n5,2,"), r"line 8: its site_id is not in sitemesh\.csv"),
-    "an event twice": (VALUES.replace("0,2,", "0,1,"), "event 1 is there twice at a site"),
-    "half an event": (VALUES.replace("0,2,", "0,1.5,"), "line 5: event_id has to be a whole number"),
-    "after blank lines": (VALUES.replace("\n0,2,0.4", "\n\n\n0,2,-0.4"), "line 7: gmv_PGA is -0.4"),
-    "after lines of Windows": (VALUES.replace("0.4", "-0.4").replace("\n", "\r\n"), "line 5: gmv_PGA is -0.4"),
-    "a heading twice": (VALUES.replace("event_id", "site_id"), "has a heading twice"),
-    "no rows": ("site_id,event_id,gmv_PGA\n", "there are no rows below the headings"),
-    "nothing": ("", "there is no table"),
-}
+BAD_VALUES = [
+    (VALUES.replace("0.4", "0.0"), r"gmf-data\.csv: line 5: gmv_PGA is 0, expected above 0 and at most 10 g"),
+    (VALUES.replace("0.4", "-0.4"), "line 5: gmv_PGA is -0.4"),
+    (VALUES.replace("0.4", "nan"), "line 5: gmv_PGA is nan"),
+    (VALUES.replace("0.4", "392"), "line 5: gmv_PGA is 392"),  # in cm/s2
+    (VALUES.replace("0.4", "high"), "line 5: 'high' is not a number"),
+    (VALUES[:-6], "the last line has no end: the file is cut off"),
+    (VALUES[:-4].rstrip() + "\n", "line 8: '' is not a number"),
+    (VALUES.replace("0.4", "0.4,1"), "line 5: the number of cells is 4, but there are 3 headings"),
+    (VALUES.replace("gmv_PGA", "gmv_PGV"), "the column gmv_PGA is missing"),
+    (VALUES.replace("event_id", "rupture"), "the column event_id is missing"),
+    (VALUES.replace("site_id", "place"), r"neither site_id nor custom_site_id is a column of both .* sitemesh\.csv"),
+    (VALUES.replace("\n1,2,", "\n5,2,"), r"line 8: its site_id is not in sitemesh\.csv"),
+    (VALUES.replace("0,2,", "0,1,"), "event 1 is there twice at a site"),
+    (VALUES.replace("0,2,", "0,1.5,"), "line 5: event_id has to be a whole number"),
+    (VALUES.replace("\n0,2,0.4", "\n\n\n0,2,-0.4"), "line 7: gmv_PGA is -0.4"),  # after blank lines
+    (VALUES.replace("0.4", "-0.4").replace("\n", "\r\n"), "line 5: gmv_PGA is -0.4"),  # after lines of Windows
+    (VALUES.replace("event_id", "site_id"), "has a heading twice"),
+    ("site_id,event_id,gmv_PGA\n", "there are no rows below the headings"),
+    ("", "there is no table"),
+]
+BAD_SITES = [
+    (SITES.replace("lon", "x"), r"^sitemesh\.csv: the column lon is missing"),
+    (SITES.replace("\n1,", "\n0,"), r"sitemesh\.csv: a site_id is there twice"),
+    (SITES.replace("37.80", "97.80"), r"sitemesh\.csv: line 3: lon and lat are not a place on earth"),
+    (SITES.replace("37.80", "nan"), r"sitemesh\.csv: line 3: lon and lat are not a place on earth"),
+]
 
 
-@pytest.mark.parametrize(("values", "match"), BAD_VALUES.values(), ids=BAD_VALUES)
-def test_values_that_cannot_be_used(tmp_path, values, match):
-    with pytest.raises(InputError, match=match):
-        read_scenarios(_write(tmp_path, values))
-
-
-@pytest.mark.parametrize(
-    ("sites", "match"),
-    [
-        (SITES.replace("lon", "x"), r"^sitemesh\.csv: the column lon is missing"),
-        (SITES.replace("\n1,", "\n0,"), r"sitemesh\.csv: a site_id is there twice"),
-        (SITES.replace("37.80", "97.80"), r"sitemesh\.csv: line 3: lon and lat are not a place on earth"),
-        (SITES.replace("37.80", "nan"), r"sitemesh\.csv: line 3: lon and lat are not a place on earth"),
-    ],
-)
-def test_sites_that_cannot_be_used(tmp_path, sites, match):
-    with pytest.raises(InputError, match=match):
-        read_scenarios(_write(tmp_path, sites=sites))
+def test_values_and_sites_that_cannot_be_used(tmp_path):
+    check_refusals(InputError, lambda values: read_scenarios(_write(tmp_path, values)), BAD_VALUES)
+    check_refusals(InputError, lambda sites: read_scenarios(_write(tmp_path, sites=sites)), BAD_SITES)
 
 
 def test_files_of_another_kind_or_missing(tmp_path):

@@ -8,6 +8,7 @@ import pytest
 from assess.errors import RecordError
 from assess.motion.formats import miniseed
 from tests.motion.writers import EAST, THREE, Signal, mseed as write
+from tests.refusals import check_refusals
 
 
 def test_channels() -> None:
@@ -21,19 +22,13 @@ def test_channels() -> None:
     )
 
 
-def test_two_stations_of_one_code() -> None:
+def test_two_stations_of_one_code_gaps_and_channels_that_are_not_read() -> None:
     records = miniseed.FORMAT.read(write(EAST) + write(EAST, station="HILL"), "made")
     assert {record.channel for record in records} == {"NP.TOWN..HNE", "NP.HILL..HNE"}
-
-
-def test_a_gap_is_bridged_and_noted() -> None:
     (record,) = miniseed.FORMAT.read(write(EAST, gap_after=200), "made")
     assert any("a gap of 1.01 s at 1.99 s is bridged by a straight line" in note for note in record.notes)
     # 199 samples of 0.01 s, resampled to 0.005 s.
     assert record.acceleration[:398:2] == pytest.approx(EAST.acceleration[:199], abs=1e-6)
-
-
-def test_a_channel_that_is_not_read_does_not_lose_the_others() -> None:
     (record,) = miniseed.FORMAT.read(write(EAST) + write(EAST, code="BHE"), "made")
     assert any(note.startswith("NP.TOWN..BHE of the file is left out: the channel's code") for note in record.notes)
 
@@ -41,20 +36,15 @@ def test_a_channel_that_is_not_read_does_not_lose_the_others() -> None:
 COUNTS = Signal(np.rint(1e5 * EAST.acceleration))
 
 
-@pytest.mark.parametrize(
-    ("data", "message"),
-    [
+def test_damage() -> None:
+    check_refusals(RecordError, lambda data: miniseed.FORMAT.read(data, "made"), [
         (write(COUNTS, whole=True), r"the channel holds raw counts, not accelerations\. Remove the instrument's "
          r'response with ObsPy \(stream\.remove_response\(inventory, output="ACC"\)\) and save .* as plain CSV'),
         (write(COUNTS), r"the peak is .* g, expected at most 50 g: is the unit right"),
         (write(EAST, code="BHE"), r"code 'BHE' is not that of an accelerometer \(such as HNE\)\. Save .* as plain CSV"),
         (write(EAST)[:100], r"the file has no complete miniSEED record\. Get the file again"),
         (write(Signal(EAST.acceleration * np.nan)), r"sample 1 is not a number"),
-    ],
-)  # fmt: skip
-def test_damage(data: bytes, message: str) -> None:
-    with pytest.raises(RecordError, match=message):
-        miniseed.FORMAT.read(data, "made")
+    ])  # fmt: skip
 
 
 @pytest.mark.parametrize(("encoding", "order"), [("FLOAT64", ">"), ("FLOAT32", "<"), ("FLOAT64", "<")])
@@ -103,18 +93,12 @@ def test_text_is_refused() -> None:
         miniseed.FORMAT.read(bytes(text), "made")
 
 
-def test_a_record_that_is_cut_off_is_left_out() -> None:
+def test_what_is_cut_off_no_record_or_no_text_loses_nothing_else() -> None:
     (record,) = miniseed.FORMAT.read(write(EAST)[:-300], "made")
     assert record.acceleration.size == 300
     assert record.notes[0] == "212 bytes that are no whole records of miniSEED were left out"
-
-
-def test_what_is_no_record_is_skipped() -> None:
     (record,) = miniseed.FORMAT.read(write(EAST)[:1024] + bytes(256) + write(EAST)[1024:], "made")
     assert record.acceleration == pytest.approx(EAST.acceleration, abs=1e-6)
     assert record.notes[0].startswith("256 bytes that are no whole records")
-
-
-def test_names_that_are_no_text() -> None:
     (record,) = miniseed.FORMAT.read(write(EAST).replace(b"TOWN", b"\xff\xfe\xff\xfe"), "made")
     assert record.station == "NP.ÿþÿþ"

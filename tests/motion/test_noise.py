@@ -23,11 +23,6 @@ def draw(envelopes: Envelopes, *, seed: int = 1, axis: str = "X", groups: int = 
     return np.concatenate([np.fft.irfft(one, find_rates(grid).length, axis=1) for one in made])
 
 
-@pytest.fixture
-def nothing_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(noise, "KEPT", Kept(noise.KEPT.most))
-
-
 # --- rates ---
 
 
@@ -51,18 +46,12 @@ def test_it_is_white_in_the_samples_and_of_one_level() -> None:
     np.testing.assert_allclose(coarse / coarse.mean(), 1.0, atol=0.2)
 
 
-def test_axes_and_seeds_and_numbers_differ() -> None:
+def test_axes_and_seeds_and_numbers_differ_floors_share_their_phases_and_there_is_no_axis_but_x_and_y() -> None:
     rows = np.concatenate([draw(FLAT)[:3], draw(FLAT, axis="Y")[:3], draw(FLAT, seed=2)[:3]])
     assert np.abs(np.corrcoef(rows) - np.eye(9)).max() < 0.1
-
-
-def test_no_axis_but_x_and_y() -> None:
     with pytest.raises(KeyError):
         draw(FLAT, axis="Z")
-
-
-def test_floors_share_their_phases() -> None:
-    """Octaves or one envelope for all: where both are flat the noise is one."""
+    # octaves or one envelope for all: where both are flat the noise is one
     one = Envelopes(np.array([0.1]), np.ones((1, 2000)), 5.0)
     np.testing.assert_array_equal(draw(one), draw(FLAT))
 
@@ -118,20 +107,15 @@ def test_given_stretches_take_the_place_of_drawn_ones() -> None:
 # --- what is kept ---
 
 
-@pytest.mark.usefixtures("nothing_kept")
-def test_noise_is_drawn_once_for_all_floors() -> None:
+def test_noise_is_drawn_once_for_all_floors_and_what_is_kept_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(noise, "KEPT", Kept(noise.KEPT.most))
     first = draw_bands(Phases(GRID, 1, "X"), 0, SILENT)
     assert draw_bands(Phases(GRID, 1, "X"), 0, SILENT) is first
     other = draw_bands(Phases(GRID, 1, "X"), 1, SILENT)
     assert other is not first
     assert draw_bands(Phases(GRID, 1, "Y"), 0, SILENT) is not first
     assert draw_bands(Phases(Grid(STEP, 2001), 1, "X"), 0, SILENT) is not first
-
-
-@pytest.mark.usefixtures("nothing_kept")
-def test_what_is_kept_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    first = draw_bands(Phases(GRID, 1, "X"), 0, SILENT)
-    monkeypatch.setattr(noise.KEPT, "most", 2 * first.nbytes)
+    monkeypatch.setattr(noise, "KEPT", Kept(2 * first.nbytes))
     for group in (1, 2, 3):
         draw_bands(Phases(GRID, 1, "X"), group, SILENT)
         assert noise.KEPT.nbytes <= 2 * first.nbytes

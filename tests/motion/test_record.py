@@ -25,6 +25,7 @@ from assess.motion.record import (
     treatment,
 )
 from assess.progress import Progress
+from tests.refusals import check_refusals
 
 MARKET = Path(__file__).parents[2] / "inventories" / "records" / "575-market"
 LETTERS = "abcdefghijk"
@@ -37,21 +38,10 @@ RECORDS = Path(__file__).parents[2] / "samples" / "records"
 
 def make_record(acceleration: FloatArray, time_step: float = 0.01, *, corrected: bool = False) -> Record:
     return Record(
-        file="made.smc",
-        format="none",
-        channel="1",
-        location="",
-        azimuth_deg=None,
-        vertical=False,
-        station="",
-        event="",
-        start="",
-        corrected=corrected,
-        time_step=time_step,
-        acceleration=acceleration,
-        file_pfa=float(np.abs(acceleration).max()),
-        header_pfa=None,
-    )
+        file="made.smc", format="none", channel="1", location="", azimuth_deg=None, vertical=False, station="",
+        event="", start="", corrected=corrected, time_step=time_step, acceleration=acceleration,
+        file_pfa=float(np.abs(acceleration).max()), header_pfa=None,
+    )  # fmt: skip
 
 
 def sine(frequency: float, duration: float, time_step: float = 0.01) -> FloatArray:
@@ -63,17 +53,8 @@ def read_market(letter: str) -> Record:
     return record
 
 
-def filter_by_fourier(values: FloatArray, time_step: float) -> FloatArray:
-    """Both passes of the analogue filter at once: |H|^2 = 1 / (1 + (fc/f)^4), with no phase."""
-    count = values.size + 2 * round(200 / time_step)
-    frequency = np.fft.rfftfreq(count, time_step)
-    gain = np.zeros_like(frequency)
-    gain[1:] = 1 / (1 + (CORNER / frequency[1:]) ** 4)
-    return np.asarray(np.fft.irfft(np.fft.rfft(values - values.mean(), count) * gain, count))
-
-
 @pytest.mark.parametrize("letter", LETTERS)
-def test_market_street_as_its_header_says(letter: str) -> None:
+def test_market_street_as_its_header_says_and_against_an_independent_filter(letter: str) -> None:
     record = read_market(letter)
     assert record.header_pfa is not None
     # The header prints one digit after the point.
@@ -89,13 +70,13 @@ def test_market_street_as_its_header_says(letter: str) -> None:
     assert not any("gap" in note for note in record.notes)
     assert record.vertical == (letter in "fj")
     assert "42n" in record.station or letter not in "abc"
-
-
-@pytest.mark.parametrize("letter", LETTERS)
-def test_market_street_against_an_independent_filter(letter: str) -> None:
-    record = read_market(letter)
     motion = treat(record)
-    filtered = filter_by_fourier(record.acceleration, record.time_step)
+    # Both passes of the analogue filter at once: |H|^2 = 1 / (1 + (fc/f)^4), with no phase.
+    count = record.acceleration.size + 2 * round(200 / record.time_step)
+    frequency = np.fft.rfftfreq(count, record.time_step)
+    gain = np.zeros_like(frequency)
+    gain[1:] = 1 / (1 + (CORNER / frequency[1:]) ** 4)
+    filtered = np.fft.irfft(np.fft.rfft(record.acceleration - record.acceleration.mean(), count) * gain, count)
     assert motion.pfa == pytest.approx(np.abs(filtered[: record.acceleration.size]).max(), rel=1e-3)
     around = np.roll(filtered, 20_000)  # the part before the first sample stands at the end
     velocity = np.cumsum(around) * record.time_step
@@ -111,16 +92,13 @@ def test_market_street_against_others(letter: str, pfa: float, pfv: float) -> No
     assert 100 * motion.pfv == pytest.approx(pfv, rel=0.02)
 
 
-def test_a_corrected_record_is_used_as_it_is() -> None:
+def test_a_corrected_record_is_used_as_it_is_and_treatment_leaves_records_alone() -> None:
     record = make_record(0.3 + sine(1, 10), corrected=True)
     before = record.acceleration.copy()
     for motion in (treat(record), treat(record, "none")):
         np.testing.assert_array_equal(motion.acceleration, before)
         assert motion.pfa == record.file_pfa
         assert motion.velocity[0] == 0
-
-
-def test_treatment_leaves_the_record_alone() -> None:
     record = make_record(0.3 + sine(1, 10))
     before = record.acceleration.copy()
     assert treat(record).acceleration.size == before.size == treat(record).velocity.size
@@ -154,19 +132,13 @@ def test_peak_velocity_of_a_sine(frequency: float) -> None:
     assert np.abs(filtered[10_000:30_000]).max() == pytest.approx(1 / (2 * np.pi * frequency), rel=2e-3)
 
 
-def test_an_offset_changes_nothing() -> None:
+def test_an_offset_changes_nothing_drift_is_removed_and_without_a_filter_the_mean() -> None:
     plain, offset = (treat(make_record(sine(1, 40) + shift)) for shift in (0.0, 0.5))
     np.testing.assert_allclose(plain.acceleration, offset.acceleration, atol=1e-12)
-
-
-def test_drift_is_removed() -> None:
     shaking = sine(1, 60) * np.hanning(6000)
     drifting = make_record(shaking + np.linspace(-0.05, 0.05, 6000))
     assert treat(drifting, "none").pfv > 0.7
     assert treat(drifting).pfv == pytest.approx(treat(make_record(shaking)).pfv, rel=0.2)
-
-
-def test_without_filter_the_mean_is_still_removed() -> None:
     values = 0.5 + sine(1, 10)
     np.testing.assert_allclose(treat(make_record(values), "none").acceleration, values - values.mean())
 
@@ -188,11 +160,8 @@ def test_treatment_in_words() -> None:
     assert treatment(replace(record, corrected=True)) == "Corrected by its provider: used as it is in the file."
 
 
-def test_resampling_follows_straight_lines() -> None:
+def test_resampling_follows_straight_lines_and_even_times_keep_every_sample() -> None:
     np.testing.assert_allclose(resample(np.array([1.0, 1.3, 1.4]), np.array([0.0, 3.0, 2.0]), 0.1), [0, 1, 2, 3, 2])
-
-
-def test_even_times_keep_every_sample() -> None:
     times, values = 5 + np.arange(100) / 300, sine(2, 1)
     series = build_series(np.round(times, 4), values)
     assert series.time_step == pytest.approx(1 / 300, rel=1e-4)
@@ -200,7 +169,7 @@ def test_even_times_keep_every_sample() -> None:
     assert series.notes == ()
 
 
-def test_backward_times_are_left_out_and_counted() -> None:
+def test_backward_times_are_left_out_and_counted_and_gaps_are_named() -> None:
     times: FloatArray = np.arange(1000.0) / 100
     times[500] = times[497]
     series = build_series(times, sine(1, 10))
@@ -208,10 +177,7 @@ def test_backward_times_are_left_out_and_counted() -> None:
     times[501] = times[500]
     notes = build_series(times, sine(1, 10)).notes
     assert notes[0] == "2 samples that are no later than one before them were left out"
-
-
-def test_gaps_are_named() -> None:
-    times: FloatArray = np.arange(1000.0) / 100
+    times = np.arange(1000.0) / 100
     times[500:] += 1.44
     assert build_series(times, sine(1, 10)).notes[-1] == "a gap of 1.45 s at 4.99 s is bridged by a straight line"
     times[800:] += 0.5
@@ -219,41 +185,25 @@ def test_gaps_are_named() -> None:
     assert build_series(times, sine(1, 10)).notes[-1] == expected
 
 
-@pytest.mark.parametrize(
-    ("times", "message"),
-    [
+def test_times_samples_and_steps_that_cannot_be() -> None:
+    check_refusals(RecordError, lambda times: build_series(times, sine(1, 10)), [
         (np.arange(1000) % 500 * 0.01, r"500 of 1000 samples are no later than one before them: times must increase"),
         (np.arange(1000.0), r"the time step is 1 s, expected 1e-05 to 0.1 s: is the time in seconds\?"),
         (np.append(np.arange(999) * 0.01, 1e6), r"the times span 1e\+06 s: cut the record to the shaking"),
         (np.append(np.arange(999) * 0.01, np.nan), r"the time of sample 1000 is nan s: correct it"),
         (np.append(np.arange(999) * 0.01, 1e300), r"the time of sample 1000 is 1e\+300 s: correct it"),
         (np.arange(1000) ** 2 * 1.0, r"the time step is 999 s"),
-    ],
-)
-def test_times_that_cannot_be(times: FloatArray, message: str) -> None:
-    with pytest.raises(RecordError, match=message):
-        build_series(times, sine(1, 10))
-
-
-@pytest.mark.parametrize(
-    ("values", "message"),
-    [
+    ])  # fmt: skip
+    check_refusals(RecordError, make_record, [
         (np.ones(FEWEST_SAMPLES - 1), r"the number of samples is 9, expected at least 10"),
         (np.append(np.arange(20.0), np.nan), r"sample 21 is not a number: correct or remove it"),
         (np.append(np.arange(20.0), np.inf), r"sample 21 is not a number"),
         (np.arange(20.0) * 100, r"the peak is 194 g, expected at most 50 g: is the unit right\?"),
         (np.full(20, 0.25), r"every sample is 0.25 m/s2: the channel holds no motion"),
-    ],
-)
-def test_samples_that_cannot_be(values: FloatArray, message: str) -> None:
-    with pytest.raises(RecordError, match=message):
-        make_record(values)
-
-
-@pytest.mark.parametrize("time_step", [0.0, -0.01, 1.0, 1e-9, float("nan")])
-def test_time_steps_that_cannot_be(time_step: float) -> None:
-    with pytest.raises(RecordError, match=r"the time step is .* is the time in seconds\?"):
-        make_record(sine(1, 10), time_step)
+    ])  # fmt: skip
+    message = r"the time step is .* is the time in seconds\?"
+    steps = [(time_step, message) for time_step in (0.0, -0.01, 1.0, 1e-9, float("nan"))]
+    check_refusals(RecordError, lambda time_step: make_record(sine(1, 10), time_step), steps)
 
 
 @pytest.mark.parametrize("time_step", [0.001, 1 / 256, 0.005, 0.01, 1 / 80, 0.02, 0.1])

@@ -12,6 +12,7 @@ from assess.errors import InputError
 from assess.motion.shakemap import name_uncertainty, parse_shakemap, read_shakemap
 from assess.units import GRAVITY
 from tests.motion.grids import BAY, EPICENTRE, LATITUDES, MARKET_STREET, build_grid
+from tests.refusals import check_refusals
 
 PGA = (10.0, 20.0, 10.0, 20.0, 40.0, 80.0)
 PLAIN = {"PGA": ("pctg", PGA)}
@@ -19,9 +20,6 @@ PLAIN = {"PGA": ("pctg", PGA)}
 
 def _at(data: bytes, latitude: float = 37.5, longitude: float = -122.0, **more):
     return parse_shakemap(data, "grid.xml", **more).at(latitude, longitude)
-
-
-# ---------------------------------------------------------------- the published grid
 
 
 def test_loma_prieta_at_575_market_street():
@@ -69,13 +67,10 @@ def test_it_travels_by_its_path_and_hash_and_notices_a_change(tmp_path):
 # ---------------------------------------------------------------- interpolation
 
 
-def test_between_points_the_logarithm_is_interpolated():
+def test_between_points_the_logarithm_is_interpolated_whichever_way_rows_run():
     assert _at(build_grid(PLAIN), 38.0, -121.75).pga == pytest.approx(0.1 * 2**0.5 * GRAVITY)
     assert _at(build_grid(PLAIN), 37.25, -121.75).pga == pytest.approx((0.1 * 0.2 * 0.4 * 0.8) ** 0.25 * GRAVITY)
     assert _at(build_grid(PLAIN), 37.0, -121.5).pga == pytest.approx(0.8 * GRAVITY), "a corner of the map"
-
-
-def test_rows_may_run_south_to_north_and_east_to_west():
     turned = build_grid({"PGA": ("pctg", PGA[::-1])}, LATITUDES[::-1], (-121.5, -122.0))
     assert _at(turned, 37.3, -121.9).pga == pytest.approx(_at(build_grid(PLAIN), 37.3, -121.9).pga, rel=1e-12)
 
@@ -110,13 +105,14 @@ def test_a_pgv_that_is_rounded_to_0_is_not_known_and_a_pga_is_refused():
 # ---------------------------------------------------------------- scatter
 
 
-def test_without_any_uncertainty_one_is_assumed_and_said_to_be():
+def test_without_any_uncertainty_one_is_assumed_and_sigma_is_interpolated_linearly():
     site = _at(build_grid(PLAIN))
     assert site.dispersion == pytest.approx(0.605, abs=5e-4)
     assert site.shared == pytest.approx(0.348**2 / 0.605**2, rel=1e-3)
-    assert site.dispersion_source.startswith(
-        "assumed, as the map has none at this place: the total of Boore et al. 2014"
-    )
+    assumed = "assumed, as the map has none at this place: the total of Boore et al. 2014"
+    assert site.dispersion_source.startswith(assumed)
+    interpolated = _at(build_grid(PLAIN | {"STDPGA": ("ln(pctg)", (0.1, 0.3) * 3)}), 37.5, -121.75)
+    assert interpolated.dispersion == pytest.approx(0.2)
 
 
 @pytest.mark.parametrize(("magnitude", "sigma"), [("4.0", 0.801), ("5.0", 0.702), ("5.5", 0.605), ("unknown", 0.605)])
@@ -124,12 +120,6 @@ def test_it_is_larger_for_small_earthquakes(magnitude, sigma):
     """tau 0.398 to 0.348 and phi 0.695 to 0.495 from magnitude 4.5 to 5.5, linearly."""
     site = _at(build_grid(PLAIN).replace(b'magnitude="6.0"', f'magnitude="{magnitude}"'.encode()))
     assert site.dispersion == pytest.approx(sigma, abs=5e-4)
-
-
-def test_sigma_is_interpolated_linearly():
-    assert _at(build_grid(PLAIN | {"STDPGA": ("ln(pctg)", (0.1, 0.3) * 3)}), 37.5, -121.75).dispersion == pytest.approx(
-        0.2
-    )
 
 
 @pytest.mark.parametrize(
@@ -198,14 +188,12 @@ def test_sigma_of_the_file_beside(tmp_path, name):
     assert found.at(37.5, -122.0).sha256 == alone.sha256
 
 
-def test_the_file_beside_may_not_be_of_another_earthquake():
+def test_the_file_beside_has_names_of_its_own_and_may_not_be_of_another_earthquake():
+    assert name_uncertainty("grid.xml") == ("uncertainty.xml",)
+    assert name_uncertainty("ev1_grid.xml") == ("ev1_uncertainty.xml", "uncertainty.xml")
+    other = build_grid({"STDPGA": ("", (0.2,) * 6)}, event="ev2")
     with pytest.raises(InputError, match=r"uncertainty\.xml: it is of the event 'ev2', but the grid of 'ev1'"):
-        parse_shakemap(
-            build_grid(PLAIN),
-            "grid.xml",
-            uncertainty=build_grid({"STDPGA": ("", (0.2,) * 6)}, event="ev2"),
-            uncertainty_name="uncertainty.xml",
-        )
+        parse_shakemap(build_grid(PLAIN), "grid.xml", uncertainty=other, uncertainty_name="uncertainty.xml")
 
 
 def test_a_file_beside_that_is_cut_off_is_named_with_its_folder_and_the_way_out(tmp_path):
@@ -218,17 +206,10 @@ def test_a_file_beside_that_is_cut_off_is_named_with_its_folder_and_the_way_out(
         read_shakemap(tmp_path / "grid.xml")
 
 
-def test_names_of_the_file_beside():
-    assert name_uncertainty("grid.xml") == ("uncertainty.xml",)
-    assert name_uncertainty("ev1_grid.xml") == ("ev1_uncertainty.xml", "uncertainty.xml")
-
-
-@pytest.mark.parametrize(
-    ("status", "text"), [("AUTOMATIC", "nobody had reviewed it"), ("CANCELLED", "has withdrawn it")]
-)
-def test_a_map_that_is_not_reviewed_is_warned_of(status, text):
-    (caution,) = _at(build_grid(PLAIN, status=status)).cautions
-    assert text in caution
+def test_a_map_that_is_not_reviewed_is_warned_of():
+    for status, text in (("AUTOMATIC", "nobody had reviewed it"), ("CANCELLED", "has withdrawn it")):
+        (caution,) = _at(build_grid(PLAIN, status=status)).cautions
+        assert text in caution, status
 
 
 # ---------------------------------------------------------------- files that cannot be used
@@ -269,39 +250,31 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("data", "match"), BAD.values(), ids=BAD)
-def test_a_file_that_cannot_be_used_is_named_with_the_reason(data, match):
-    with pytest.raises(InputError, match=rf"(?s)^grid\.xml: .*(?:{match})"):
-        parse_shakemap(data, "grid.xml")
+def test_a_file_that_cannot_be_used_is_named_with_the_reason():
+    cases = [(data, rf"(?s)^grid\.xml: .*(?:{match})") for data, match in BAD.values()]
+    check_refusals(InputError, lambda data: parse_shakemap(data, "grid.xml"), cases)
 
 
 def test_no_number_is_refused_only_next_to_a_building():
     found = parse_shakemap(build_grid({"PGA": ("pctg", (1, 2, "NaN", 4, 5, 6))}), "grid.xml")
-    with pytest.raises(
-        InputError, match=r"grid\.xml: the PGA of the map is 0 or not a number \(NaN\) at latitude 37\.6"
-    ):
+    message = r"grid\.xml: the PGA of the map is 0 or not a number \(NaN\) at latitude 37\.6"
+    with pytest.raises(InputError, match=message):
         found.at(37.6, -121.7)
     site = found.at(38.0, -121.7)
     assert np.isfinite(site.pga)
     assert site.cautions == ("1 point of the ShakeMap's grid holds no value (NaN); it is not next to the building",)
 
 
-def test_a_scatter_that_is_no_number_is_assumed():
+def test_a_scatter_that_is_no_number_is_assumed_and_points_without_a_value_are_next_to_some_buildings_only():
+    missing = "the ShakeMap holds no value (NaN) of {} next to the building: it is taken as not known there"
     found = parse_shakemap(build_grid(PLAIN | {"STDPGA": ("", ("nan",) * 6)}), "grid.xml").at(37.5, -121.7)
     assert found.dispersion > 0.5
     assert str(found.dispersion_source).startswith("assumed, as the map has none at this place")
-    assert found.cautions == (
-        "the ShakeMap holds no value (NaN) of STDPGA next to the building: it is taken as not known there",
-    )
-
-
-def test_points_without_a_value_are_next_to_some_buildings_only():
+    assert found.cautions == (missing.format("STDPGA"),)
     data = build_grid(PLAIN | {"PGV": ("cms", (1, 1, "nan", "nan", 1, 1))}, (38.0, 37.5, 37.0))
     near, far = _at(data, 37.6, -121.7), _at(data, 37.0, -121.7)
     assert near.pgv is None
-    assert near.cautions == (
-        "the ShakeMap holds no value (NaN) of PGV next to the building: it is taken as not known there",
-    )
+    assert near.cautions == (missing.format("PGV"),)
     assert far.pgv is not None
     assert far.cautions == (
         "2 points of the ShakeMap's grid hold no value (NaN); none of them is next to the building",

@@ -60,15 +60,12 @@ def test_shared_motions_are_those_made_alone(nothing_kept: list[int]) -> None:
     np.testing.assert_allclose(other.spectra.target, 2.5 * one.spectra.target)
 
 
-def test_the_order_in_which_floors_come_changes_nothing() -> None:
+def test_neither_the_order_of_floors_nor_changes_to_what_is_handed_out_change_anything() -> None:
     late = share(factor=0.3).realise(120, 20), share(factor=4.0).realise(0, 140)
     shared_motions.KEPT.forget()
     early = share(factor=4.0).realise(0, 140), share(factor=0.3).realise(120, 20)
     np.testing.assert_array_equal(late[0], early[1])
     np.testing.assert_array_equal(late[1], early[0])
-
-
-def test_what_is_handed_out_may_be_changed() -> None:
     kept = share().realise(0, 130)
     share().realise(0, 130)[:] = 0.0
     share().spectra.ordinates[:] = 0.0

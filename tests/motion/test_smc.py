@@ -1,22 +1,20 @@
 """USGS SMC: real files, the same files damaged, and what is said of them."""
 
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from assess.errors import RecordError
 from assess.motion.formats import read_records, smc
-from assess.motion.record import Record
+from tests.motion.damage import read_only
+from tests.refusals import check_refusals
 
 RECORDS = Path(__file__).parents[2] / "samples" / "records"
 UNEVEN = RECORDS.parents[1] / "inventories" / "records" / "575-market" / "891018_1.cra-1.0210k.smc"
 ROOF = (RECORDS / "1103.HN2.NP.RE_a.smc").read_bytes()
 UNCORRECTED = (RECORDS / "0165a_u.smc").read_bytes()
-
-
-def read_smc(data: bytes) -> Record:
-    (record,) = smc.FORMAT.read(data, "made.smc")
-    return record
+read_smc = partial(read_only, smc.FORMAT)
 
 
 def with_line(data: bytes, number: int, content: bytes) -> bytes:
@@ -42,12 +40,14 @@ def test_smc_corrected() -> None:
     assert record.acceleration[:3] == pytest.approx([6.4470e-5, -1.34e-4, -6.0292e-4])
 
 
-def test_smc_uncorrected_and_even() -> None:
+def test_smc_uncorrected_and_even_and_an_older_wording_of_the_peak() -> None:
     record = read_smc(UNCORRECTED)
     assert (record.corrected, record.time_step, record.acceleration.size) == (False, 0.005, 6012)
     assert record.location == "floor 12"
     assert record.file_pfa == pytest.approx(2.6349)
     assert record.header_pfa == pytest.approx(2.635)
+    (record,) = read_records(RECORDS / "np01002p_4225a_a.smc")
+    assert record.header_pfa == pytest.approx(2.225)
 
 
 def test_smc_vertical() -> None:
@@ -57,33 +57,22 @@ def test_smc_vertical() -> None:
     assert (by_angle.vertical, by_angle.channel) == (True, "1")
 
 
-def test_smc_older_wording_of_the_peak() -> None:
-    (record,) = read_records(RECORDS / "np01002p_4225a_a.smc")
-    assert record.header_pfa == pytest.approx(2.225)
-
-
 def test_smc_velocity_is_refused() -> None:
-    with pytest.raises(
-        RecordError, match=r"RE_v\.smc: the file holds velocities \(3 VELOCITY\), not accelerations\. Give the acc"
-    ):
+    message = r"RE_v\.smc: the file holds velocities \(3 VELOCITY\), not accelerations\. Give the acc"
+    with pytest.raises(RecordError, match=message):
         read_records(RECORDS / "1103.HN2.NP.RE_v.smc")
     with pytest.raises(RecordError, match=r"the file holds displacements \(4 DISPLACEMENT\)"):
         read_smc(with_line(ROOF, 1, b"4 DISPLACEMENT"))
 
 
-@pytest.mark.parametrize(
-    ("data", "message"),
-    [
+def test_smc_damage() -> None:
+    check_refusals(RecordError, read_smc, [
         (b"hello", r"the first line names no type of SMC file"),
         (ROOF[:500], r"the file is cut short: its header takes 27 lines, the file has \d+\. Get the file again"),
-        (
-            ROOF[:50_000],
-            r"cut short: it has \d{4} of the 8200 data values that its header announces\. Get the file again",
-        ),
-        (
-            ROOF + b"\r\n 1.0000E+0" * 100,
-            r"the file has more data values than the 8200 that its header announces\. Get",
-        ),
+        (ROOF[:50_000],
+         r"cut short: it has \d{4} of the 8200 data values that its header announces\. Get the file again"),
+        (ROOF + b"\r\n 1.0000E+0" * 100,
+         r"the file has more data values than the 8200 that its header announces\. Get"),
         (with_line(ROOF, 40, b" 1.0x00E+0" * 8), r"line 40: '1\.0x00E\+0' is not a number"),
         (with_line(ROOF, 40, b" 1.0000E+0" * 7) + b"\r\n 1.0000E+0", r"line 40: a number is missing"),
         (with_line(ROOF, 40, b"       nan" * 8), r"sample 25 is not a number"),
@@ -92,10 +81,8 @@ def test_smc_velocity_is_refused() -> None:
         (with_line(ROOF, 12, b"    -32768      20x8"), r"line 12: '20x8' is not a whole number"),
         (header_line(ROOF, 13, 7, "8", 10), r"the number of comment lines is 9, but 8 in the header"),
         (b"\n".join(ROOF.splitlines()[:30]), r"there are no data below the header"),
-        (
-            header_line(ROOF, 14, 0, "9999999999", 10),
-            r"cut short: it has 8200 of the 9999999999 data values that its header announces",
-        ),
+        (header_line(ROOF, 14, 0, "9999999999", 10),
+         r"cut short: it has 8200 of the 9999999999 data values that its header announces"),
         (header_line(ROOF, 14, 0, "0", 10), r"the number of data values is 0 in the header\."),
         (header_line(ROOF, 14, 0, "-32768", 10), r"the number of data values is 0 in the header\."),
         (header_line(ROOF, 18, 1, "0.0", 15), r"line 18: the sampling rate is 0 Hz, expected above 0"),
@@ -104,28 +91,19 @@ def test_smc_velocity_is_refused() -> None:
         (header_line(ROOF, 18, 1, "fast", 15), r"line 18: 'fast' is not a number"),
         (header_line(ROOF, 18, 1, "1.0E+09", 15), r"the time step is 1e-09 s"),
         (header_line(ROOF, 18, 1, "1.7000000E+38", 15), r"samples are no later than one before them"),
-        (
-            header_line(header_line(ROOF, 18, 1, "1.7E+38", 15), 14, 0, "8199", 10),
-            r"the number of data values is 8199, which is odd: they cannot be pairs",
-        ),
-    ],
-)
-def test_smc_damage(data: bytes, message: str) -> None:
-    with pytest.raises(RecordError, match=message):
-        read_smc(data)
+        (header_line(header_line(ROOF, 18, 1, "1.7E+38", 15), 14, 0, "8199", 10),
+         r"the number of data values is 8199, which is odd: they cannot be pairs"),
+    ])  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("data", "note"),
-    [
+def test_smc_notes() -> None:
+    for data, note in (
         (ROOF + b"\r\n 1.0000E+0", "1 number beyond the 8200 that the header announces: left out"),
         (header_line(ROOF, 13, 5, "17", 10), "the header gives two azimuths, 171 and 17 deg: the first is used"),
         (header_line(ROOF, 14, 1, "1", 10), "the header flags a problem with the data: read its comments"),
         (ROOF.replace(b"-5.14E+1", b"-4.14E+1"), "the header prints a peak of 41.4 cm/s2, the data have 51.4 cm/s2"),
-    ],
-)
-def test_smc_notes(data: bytes, note: str) -> None:
-    assert read_smc(data).notes == (note,)
+    ):
+        assert read_smc(data).notes == (note,)
 
 
 def test_smc_headers_that_say_little() -> None:

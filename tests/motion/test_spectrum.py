@@ -190,31 +190,21 @@ def test_finer_steps_along_the_same_lines_change_nothing() -> None:
 # --- arrays ---
 
 
-def test_shapes_follow_those_of_the_motions() -> None:
+def test_shapes_follow_those_of_the_motions_and_threads_change_nothing() -> None:
     many, one = (response_spectrum(motions, 0.01, PERIODS) for motions in (NOISE, NOISE[1]))
     assert many.pseudo.shape == many.absolute.shape == (3, PERIODS.size)
     assert one.pseudo.shape == one.absolute.shape == PERIODS.shape
     np.testing.assert_array_equal(many.pseudo[1], one.pseudo)
     np.testing.assert_array_equal(many.absolute[1], one.absolute)
-
-
-def test_threads_change_nothing() -> None:
     alone, shared = (response_spectrum(NOISE, 0.01, PERIODS, threads=number) for number in (1, 5))
     np.testing.assert_array_equal(alone.pseudo, shared.pseudo)
     np.testing.assert_array_equal(alone.absolute, shared.absolute)
 
 
-def test_one_period_is_as_among_many() -> None:
+def test_one_period_is_as_among_many_and_inputs_are_left_alone() -> None:
     """Vector lanes may round otherwise, in the last digits."""
     alone = [response_spectrum(NOISE[0], 0.01, PERIODS[[place]]).pseudo[0] for place in range(PERIODS.size)]
     np.testing.assert_allclose(alone, response_spectrum(NOISE[0], 0.01, PERIODS).pseudo, rtol=1e-12)
-
-
-def test_lists_and_integers_and_strides_are_taken() -> None:
-    values = [0, 3, -1, 2, 0, 1]
-    expected = response_spectrum(np.array(values, dtype=float), 0.1, np.array([0.5])).pseudo
-    for given_as in (values, np.array(values), np.repeat(values, 2)[::2], np.array(values, dtype=np.float32)):
-        np.testing.assert_array_equal(response_spectrum(given_as, 0.1, [0.5]).pseudo, expected)
 
 
 def test_inputs_are_left_alone() -> None:
@@ -236,12 +226,9 @@ def test_it_scales_and_has_no_sign(factor: float, seed: int, damping: float) -> 
     np.testing.assert_allclose(scaled.absolute, factor * plain.absolute, rtol=1e-9)
 
 
-def test_zeros_after_the_motion_only_let_it_ring_on() -> None:
+def test_zeros_after_the_motion_only_let_it_ring_on_and_zeros_before_change_nothing() -> None:
     longer = np.pad(NOISE, ((0, 0), (0, 300)))
     assert (response_spectrum(longer, 0.01, PERIODS).pseudo >= response_spectrum(NOISE, 0.01, PERIODS).pseudo).all()
-
-
-def test_zeros_before_the_motion_change_nothing() -> None:
     later = np.pad(NOISE, ((0, 0), (50, 0)))
     later[:, 50] = 0.0
     still = later[:, 50:]
@@ -249,10 +236,14 @@ def test_zeros_before_the_motion_change_nothing() -> None:
     np.testing.assert_allclose(ours[0].pseudo, ours[1].pseudo, rtol=1e-10)
 
 
-def test_periods_are_even_in_their_logarithm() -> None:
+def test_periods_are_even_in_their_logarithm_and_lists_and_integers_and_strides_are_taken() -> None:
     periods = build_periods(0.1, 10.0, 5)
     np.testing.assert_allclose(periods, [0.1, 10**-0.5, 1.0, 10**0.5, 10.0])
     assert build_periods().size == 120
+    values = [0, 3, -1, 2, 0, 1]
+    expected = response_spectrum(np.array(values, dtype=float), 0.1, np.array([0.5])).pseudo
+    for given_as in (values, np.array(values), np.repeat(values, 2)[::2], np.array(values, dtype=np.float32)):
+        np.testing.assert_array_equal(response_spectrum(given_as, 0.1, [0.5]).pseudo, expected)
 
 
 def test_every_row_is_worked_once_and_an_error_in_a_thread_is_raised() -> None:

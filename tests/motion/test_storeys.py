@@ -16,9 +16,7 @@ def test_the_storey_that_a_name_tells():
     assert {find_storey(name) for name in UNNUMBERED} == {None}
     assert {assume_elevation(name, 12.0, 4) for name in UNNUMBERED} == {None}
     assert assume_elevation("2", None, 4) is assume_elevation("2", 12.0, None) is None
-
-
-def test_storeys_are_of_one_height_and_no_floor_is_above_the_roof():
+    # storeys are of one height, and no floor is above the roof
     assert [assume_elevation(str(one), 12.0, 4) for one in range(6)] == [0, 3, 6, 9, 12, 12]
 
 

@@ -22,10 +22,6 @@ FEW_NOTE = "{} motions are few: the probabilities have wide intervals"
 ONLY_NOTE = "only 1 motion: the probabilities have wide intervals"
 
 
-def _names(folder: Path) -> list[str]:
-    return [name for name, _ in read_suite(folder).motions]
-
-
 def test_motions_are_treated_and_in_the_order_of_steps_and_names(tmp_path: Path) -> None:
     for name, step in (("c", 0.01), ("a", 0.02), ("b", 0.01)):
         write_record(tmp_path / f"{name}.csv", 0.2 * WAVE, step)
@@ -37,9 +33,14 @@ def test_motions_are_treated_and_in_the_order_of_steps_and_names(tmp_path: Path)
     np.testing.assert_array_equal(motion.acceleration, read_motion("a").acceleration)
 
 
-def test_files_are_hashed(tmp_path: Path) -> None:
+def test_files_are_hashed_and_texts_hidden_files_and_folders_are_passed_over(tmp_path: Path) -> None:
     path = write_record(tmp_path / "a.csv", WAVE)
     assert read_suite(tmp_path).files == {"a.csv": hashlib.sha256(path.read_bytes()).hexdigest()}
+    for name in ("README.md", "page.html", "page.HTM", "paper.pdf", "notes.rst", ".DS_Store", ".a.csv"):
+        (tmp_path / name).write_text("not a record", encoding="utf-8")
+    (tmp_path / "more").mkdir()
+    write_record(tmp_path / "more" / "b.csv", WAVE)
+    assert [name for name, _ in read_suite(tmp_path).motions] == ["a.csv"]
 
 
 def test_vertical_channels_are_left_out_and_named(tmp_path: Path) -> None:
@@ -53,16 +54,10 @@ def test_vertical_channels_are_left_out_and_named(tmp_path: Path) -> None:
     assert len(suite) + note.count(".smc#") == 3
 
 
-def test_texts_hidden_files_and_folders_are_passed_over(tmp_path: Path) -> None:
-    write_record(tmp_path / "a.csv", WAVE)
-    for name in ("README.md", "page.html", "page.HTM", "paper.pdf", "notes.rst", ".DS_Store", ".a.csv"):
-        (tmp_path / name).write_text("not a record", encoding="utf-8")
-    (tmp_path / "more").mkdir()
-    write_record(tmp_path / "more" / "b.csv", WAVE)
-    assert _names(tmp_path) == ["a.csv"]
-
-
-def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
+def test_a_folder_that_is_not_there_or_without_horizontal_channels(tmp_path: Path) -> None:
+    (tmp_path / "README.md").write_text("empty", encoding="utf-8")
+    with pytest.raises(RecordError, match=r"the folder holds no horizontal channel\. Put floor records into it"):
+        read_suite(tmp_path)
     with pytest.raises(RecordError, match=r"none: there is no such folder\. Name a folder of floor records"):
         read_suite(tmp_path / "none")
     path = write_record(tmp_path / "a.csv", WAVE)
@@ -70,18 +65,12 @@ def test_a_folder_that_is_not_there(tmp_path: Path) -> None:
         read_suite(path)
 
 
-def test_a_folder_without_horizontal_channels(tmp_path: Path) -> None:
-    (tmp_path / "README.md").write_text("empty", encoding="utf-8")
-    with pytest.raises(RecordError, match=r"the folder holds no horizontal channel\. Put floor records into it"):
-        read_suite(tmp_path)
-
-
-@pytest.mark.parametrize("content", [b"", b"nothing of use\n", b"\x89PNG\r\n\x1a\n\0\0\0"])
-def test_a_file_that_is_no_record_is_named(tmp_path: Path, content: bytes) -> None:
+def test_a_file_that_is_no_record_is_named(tmp_path: Path) -> None:
     write_record(tmp_path / "a.csv", WAVE)
-    (tmp_path / "odd.txt").write_bytes(content)
-    with pytest.raises(RecordError, match=r"odd\.txt"):
-        read_suite(tmp_path)
+    for content in (b"", b"nothing of use\n", b"\x89PNG\r\n\x1a\n\0\0\0"):
+        (tmp_path / "odd.txt").write_bytes(content)
+        with pytest.raises(RecordError, match=r"odd\.txt"):
+            read_suite(tmp_path)
 
 
 def test_motions_of_one_step_make_a_batch_and_shorter_ones_rest_at_their_end(tmp_path: Path) -> None:
@@ -114,7 +103,7 @@ def test_each_is_scaled_to_a_pfa(tmp_path: Path) -> None:
     assert len(set(np.abs(given).max(axis=1))) == 3
 
 
-def test_spectra_of_motions_of_several_steps(tmp_path: Path) -> None:
+def test_spectra_of_motions_of_several_steps_of_the_first_hundred_only(tmp_path: Path) -> None:
     """The second has the same samples at twice the step; a shorter one is followed by rest."""
     for name, size, step in (("a", 400, 0.01), ("b", 400, 0.02), ("c", 300, 0.01)):
         write_record(tmp_path / f"{name}.csv", 0.2 * WAVE[:size], step)
@@ -126,11 +115,5 @@ def test_spectra_of_motions_of_several_steps(tmp_path: Path) -> None:
         expected = response_spectrum(motion, step, spectra.periods).pseudo
         np.testing.assert_allclose(own, expected, rtol=1e-6)
         np.testing.assert_allclose(to_peak, expected * 3.0 / np.abs(motion).max(), rtol=1e-6)
-
-
-def test_spectra_of_the_first_hundred_only(tmp_path: Path) -> None:
-    for name in ("a", "b"):
-        write_record(tmp_path / f"{name}.csv", 0.2 * WAVE)
-    suite = read_suite(tmp_path)
-    many = dataclasses.replace(suite, motions=suite.motions * 60)
+    many = dataclasses.replace(suite, motions=suite.motions * 40)
     assert len(many.scaled_spectra(1.0).ordinates) == MOST_SPECTRA == 100

@@ -63,9 +63,14 @@ def test_the_last_peak_may_come_after_shaking() -> None:
     )
 
 
-def test_silence_has_no_peaks() -> None:
+def test_silence_has_no_peaks_and_short_motions_are_not_halved() -> None:
+    """Of short ones the ends count: two seconds keep all their samples."""
     peaks, _ = Sweep.of(PERIODS, STEP, 500).peaks(np.zeros((2, 500), np.float32))
     np.testing.assert_array_equal(peaks, 0.0)
+    motion = read_motion("a").acceleration[2000:2401]
+    np.testing.assert_allclose(Sweep.of(PERIODS, STEP, 401).spectra(single(motion))[0], exact(motion), rtol=6e-3)
+    assert Sweep.of(PERIODS, STEP, 401).depths.max() == 0
+    assert Sweep.of(PERIODS, STEP, 12_000).depths.max() == 3
 
 
 @pytest.mark.parametrize("count", [2, 3, 4, 5, 41, 402])
@@ -83,11 +88,3 @@ def test_halving_keeps_long_waves_and_takes_off_the_shortest() -> None:
     gain = 1 + (2 * np.pi / 80) ** 2 / 4  # straight lines between half as many samples take as much off again
     np.testing.assert_allclose(half[0, 1:-1], gain * wave[::2][1:-1], atol=1e-4)
     np.testing.assert_allclose(half[1, 1:-1], 0.0, atol=1e-6)
-
-
-def test_short_motions_are_not_halved() -> None:
-    """There the ends count: two seconds keep all their samples."""
-    motion = read_motion("a").acceleration[2000:2401]
-    np.testing.assert_allclose(Sweep.of(PERIODS, STEP, 401).spectra(single(motion))[0], exact(motion), rtol=6e-3)
-    assert Sweep.of(PERIODS, STEP, 401).depths.max() == 0
-    assert Sweep.of(PERIODS, STEP, 12_000).depths.max() == 3

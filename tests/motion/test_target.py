@@ -20,36 +20,27 @@ from tests.motion.motions import cut, make_motion, read_motion
 # --- grid ---
 
 
-def test_a_grid_is_as_long_as_the_longest_record() -> None:
+def test_a_grid_is_as_long_as_the_longest_record_or_as_drawn_motions() -> None:
     motions = [
         make_motion(np.sin(np.arange(count)), step) for count, step in [(1001, 0.01), (301, 0.02), (5001, 0.001)]
     ]
     assert build_grid(motions) == Grid(0.005, 2001)
     assert build_grid(motions).duration == pytest.approx(10.0)
     assert build_grid(motions[2:]) == Grid(0.005, 1001)
-
-
-def test_a_step_that_does_not_divide_adds_a_sample() -> None:
-    assert build_grid([make_motion(np.sin(np.arange(101)), 1 / 300)]) == Grid(0.005, 68)
-
-
-def test_it_is_as_long_as_drawn_motions_where_there_are_any() -> None:
+    assert build_grid([make_motion(np.sin(np.arange(101)), 1 / 300)]) == Grid(0.005, 68), "a step that does not divide"
     short = [make_motion(np.sin(np.arange(1001)), 0.01)]
     assert build_grid(short, at_least=Grid(0.005, 7001)) == Grid(0.005, 7001)
     assert build_grid(short, at_least=Grid(0.005, 101)) == Grid(0.005, 2001)
     assert build_grid([], at_least=Grid(0.005, 7001)) == Grid(0.005, 7001)
 
 
-def test_a_motion_is_put_on_the_grid_along_straight_lines() -> None:
+def test_a_motion_is_put_on_the_grid_along_straight_lines_and_one_on_it_is_kept_to_the_bit() -> None:
     motion = make_motion(np.array([0.0, 2.0, 4.0, 1.0, 0.0, -2.0, 0.0, 1.0, 1.0, 3.0]), 0.01)
     on = put_on_grid(motion, Grid(0.005, 25))
     np.testing.assert_allclose(on[:7], [0.0, 1.0, 2.0, 3.0, 4.0, 2.5, 1.0])
     assert on[18] == 3.0
     np.testing.assert_array_equal(on[19:], 0.0)
     assert on.size == 25
-
-
-def test_a_motion_on_the_grid_is_kept_to_the_bit() -> None:
     motion = read_motion("a")
     np.testing.assert_allclose(put_on_grid(motion, build_grid([motion])), motion.acceleration, atol=1e-12)
 

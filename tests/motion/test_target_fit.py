@@ -25,7 +25,7 @@ TARGET = Target(
 WANTED = response_spectrum(TARGET.acceleration, STEP, BETWEEN).pseudo
 
 
-def test_peaks_and_their_scatter() -> None:
+def test_peaks_and_their_scatter_and_the_spectrum_between_its_periods() -> None:
     fit, _ = measure_match(TARGET, MOTIONS, STEP)
     assert fit.count == 2
     assert fit.pfa_ratio == pytest.approx(1.5)  # (2 + 4)/2 over 2
@@ -33,10 +33,6 @@ def test_peaks_and_their_scatter() -> None:
     assert fit.pfv_ratio == pytest.approx(1.25)  # (0.010 + 0.015)/2 over 0.01
     assert fit.pfv_scatter == pytest.approx(0.2)  # 0.0025 over 0.0125
     assert fit.drift == pytest.approx(0.5)  # 0.005 over 0.010, and 0
-
-
-def test_the_spectrum_is_judged_between_its_periods() -> None:
-    fit, _ = measure_match(TARGET, MOTIONS, STEP)
     first, second = response_spectrum(MOTIONS, STEP, BETWEEN).pseudo
     deviation = (first + second) / 2 / WANTED - 1
     worst = int(np.abs(deviation).argmax())
@@ -57,22 +53,15 @@ def test_motions_that_are_their_own_target_fit() -> None:
     assert (fit.pfa_ratio, fit.pfa_scatter) == pytest.approx((1.0, 0.0), abs=1e-6)
 
 
-def test_threads_change_nothing() -> None:
+def test_the_spectra_are_those_that_were_measured_whatever_the_threads() -> None:
     assert measure_match(TARGET, MOTIONS, STEP)[0] == measure_match(TARGET, MOTIONS, STEP, threads=3)[0]
-
-
-def test_the_spectra_are_those_that_were_measured() -> None:
-    _, spectra = measure_match(TARGET, MOTIONS, STEP)
+    spectra = measure_match(TARGET, MOTIONS, STEP)[1]
     np.testing.assert_allclose(spectra.periods, BETWEEN, rtol=1e-12)
     assert spectra.ordinates.dtype == np.float32
     for motion, ordinates in zip(MOTIONS, spectra.ordinates, strict=True):
         np.testing.assert_allclose(ordinates, response_spectrum(motion, STEP, BETWEEN).pseudo, rtol=1e-5)
     assert spectra.target is not None
     np.testing.assert_allclose(spectra.target, WANTED, rtol=1e-12)
-
-
-def test_the_spectra_of_the_first_motions() -> None:
-    spectra = measure_match(TARGET, MOTIONS, STEP)[1]
     assert [len(spectra.first(count).ordinates) for count in (1, 2, 9)] == [1, 2, 2]
     np.testing.assert_array_equal(spectra.first(1).ordinates, spectra.ordinates[:1])
     assert spectra.first(1).target is spectra.target

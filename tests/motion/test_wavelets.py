@@ -103,15 +103,12 @@ def test_it_is_linear_in_what_is_asked_follows_the_sign_and_a_ratio_of_one_chang
     np.testing.assert_allclose(adjusted(-motion, ratios_at(2, 1.1)), -adjusted(motion, ratios_at(2, 1.1)), atol=1e-6)
 
 
-def test_a_motion_shorter_than_the_wavelet_is_changed_within_its_ends() -> None:
+def test_a_motion_shorter_than_the_wavelet_is_changed_within_its_ends_and_one_period_is_as_among_many() -> None:
     motion = np.sin(np.arange(50) / 5)
     changed = adjusted(motion, np.full(PERIODS.size, 1.1))
     assert np.isfinite(changed).all()
     assert not np.array_equal(changed, motion)
     np.testing.assert_array_equal(adjusted(np.zeros(500), np.full(PERIODS.size, 1.2)), 0.0)
-
-
-def test_wavelets_of_one_period_are_as_among_many() -> None:
     one = build_wavelets((PERIODS[2],), STEP)
     np.testing.assert_array_equal(one.samples, samples_of(2))
     assert (one.peak[0], one.at[0]) == (WAVELETS.peak[2], WAVELETS.at[2])
