@@ -75,21 +75,16 @@ def test_files_that_the_workbook_names_are_looked_for_next_to_it(tmp_path):
 # ---------------------------------------------------------------- what lacks the shaking
 
 
-def test_what_is_wrong_stays_an_error_next_to_what_is_missing(tmp_path):
+def test_what_lacks_the_shaking_and_what_does_not(tmp_path):
+    """What is wrong stays an error next to what is missing; a chosen profile without ground motion is incomplete."""
     items = [*ITEMS, {"item": "B", "floor": "9", "breadth": 40, "height": 180}]
     done = run("check", write(tmp_path / "w.xlsx", items, LACKING))
     assert done.exit_code == 2
     assert "3 errors; nothing was written." in done.stderr
     assert "incomplete" not in done.stderr
-
-
-def test_a_chosen_profile_without_ground_motion_is_incomplete_too(tmp_path):
     done = run("check", write(tmp_path / "w.xlsx", scenario_kind="NTC 2018", floors=LACKING))
     assert done.exit_code == 1
     assert "Hazard map" in done.stderr
-
-
-def test_shaking_that_is_not_used_is_told_no_ways(tmp_path):
     done = run("check", write(tmp_path / "w.xlsx", shaking="MMI VII, very strong"))
     assert done.exit_code == 0
     assert "Shaking is not used" in done.stderr

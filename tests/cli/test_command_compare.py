@@ -34,7 +34,7 @@ def _compare(folder, before, after, *options):
     return done
 
 
-def test_anchored_pieces_get_better_and_the_option_is_named(folder, tmp_path):
+def test_anchored_pieces_get_better_and_before_and_after_are_what_each_run_says(folder, tmp_path):
     done = _compare(folder, "base", "held", "--out", tmp_path, "--formats", "html", "--json")
     record = json.loads(done.stdout)
     changes = {one["item"]: one["change"] for one in record["items"]}
@@ -44,9 +44,6 @@ def test_anchored_pieces_get_better_and_the_option_is_named(folder, tmp_path):
         "before": 1, "after": 5, "comparable": True, "within_sampling_interval": None,
     }  # fmt: skip
     assert "AFTER: taken as anchored: A1, A3" in (tmp_path / "compare.html").read_text(encoding="utf-8")
-
-
-def test_before_and_after_equal_what_each_run_says(folder, tmp_path):
     record = json.loads(_compare(folder, "base", "strong", "--out", tmp_path, "--formats", "json", "--json").stdout)
     for side, name in (("before", "base"), ("after", "strong")):
         own = json.loads((folder / name / "results.json").read_text(encoding="utf-8"))
@@ -123,9 +120,8 @@ def test_runs_by_different_code_are_compared_as_they_are_under_a_sentence_that_s
     assert done.stdout.startswith(first)
     page = (tmp_path / "out" / "compare.html").read_text(encoding="utf-8")
     assert page.index(first) < page.index("Counts before and after")
-    assert (
-        json.loads((tmp_path / "out" / "compare.json").read_text(encoding="utf-8"))["comparison"]["same_code"] is False
-    )
+    document = json.loads((tmp_path / "out" / "compare.json").read_text(encoding="utf-8"))
+    assert document["comparison"]["same_code"] is False
 
 
 def test_the_code_of_the_program_is_another_where_any_module_or_table_is(tmp_path, monkeypatch):

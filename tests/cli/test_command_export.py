@@ -28,7 +28,6 @@ def made(tmp_path_factory):
 
 @pytest.fixture
 def results(made, tmp_path):
-    """Return a folder of its own with the results."""
     path = tmp_path / "results.json"
     path.write_bytes(made.read_bytes())
     return path

@@ -117,22 +117,17 @@ def test_where_nothing_is_fitted_the_reason_stands():
     assert set(FORMATS["csv"](curves).files) == {"fragility.csv", "fragility_table.csv"}
 
 
-def test_a_long_text_is_cut_and_the_document_is_not():
+def test_a_long_text_is_cut_the_document_is_not_and_the_figure_draws_the_lowest_medians_first():
     curves = curves_of(*[[0.1, 0.5, 0.9]] * (MOST_LINES + 3))
     assert "\n... and 3 more, which files and --json hold.\n" in curves.to_text()
     assert len(curves.describe()["curves"]) == MOST_LINES + 3
-
-
-def test_the_figure_draws_the_lowest_medians_first():
     flat, early, late = [0.0, 0.0, 0.0, 0.0], [0.1, 0.6, 0.9, 1.0], [0.0, 0.1, 0.6, 0.9]
     curves = curves_of(flat, late, early)
     panels, left = choose_curves(curves.found.curves)
     assert ([one.name for one in panels[0]], len(panels), left) == (["p2", "p1", "p0"], 1, 0)
     panels, left = choose_curves(curves_of(*[early] * 40).found.curves)
-    assert ([len(one) for one in panels], left) == (
-        [CURVES_A_PANEL] * MOST_CURVE_PANELS,
-        40 - CURVES_A_PANEL * MOST_CURVE_PANELS,
-    )
+    assert [len(one) for one in panels] == [CURVES_A_PANEL] * MOST_CURVE_PANELS
+    assert left == 40 - CURVES_A_PANEL * MOST_CURVE_PANELS
     assert [len(one) for one in choose_curves(curves_of(*[early] * 8).found.curves)[0]] == [4, 4]
 
 
@@ -182,19 +177,14 @@ def test_files_appear_all_or_none(tmp_path, monkeypatch):
     assert [(one.name, one.read_text(encoding="utf-8")) for one in out.iterdir()] == [("fragility.csv", "before")]
 
 
-# --- for other programs ---
-
 GROUND = [{"ground_pga": 0.25, "height": 9}]
-
-
-TYPES = ("--by", "type", "--runs", 200)
 
 
 @pytest.mark.slow
 def test_files_for_pelicun_and_openquake(tmp_path):
     """What a format has no place for is named with its reason, and the exit status tells; the files are written."""
     path, out = write(tmp_path, Building=GROUND), tmp_path / "out"
-    done = run("fragility", path, *TYPES, "--formats", "pelicun,nrml", "--out", out)
+    done = run("fragility", path, "--by", "type", "--runs", 200, "--formats", "pelicun,nrml", "--out", out)
     assert done.exit_code == 1
     assert sorted(one.name for one in out.iterdir()) == ["w-nrml.xml", "w-pelicun.csv", "w-pelicun.json"]
     table = csv.DictReader(io.StringIO((out / "w-pelicun.csv").read_text(encoding="utf-8")))
@@ -213,7 +203,6 @@ def test_nothing_is_written_where_a_format_has_no_curve_at_all(tmp_path):
     path = write(tmp_path)
     words = ("--levels", "0.01:0.02:0.01", "--runs", 5, "--formats", "csv,pelicun", "--out", tmp_path / "out")
     text = error(run("fragility", path, *words))
-    assert (
-        "--formats: none of the 3 curves can be written for pelicun. The first is a1: not fitted: nothing fell" in text
-    )
+    said = "none of the 3 curves can be written for pelicun. The first is a1: not fitted: nothing fell"
+    assert f"--formats: {said}" in text
     assert not (tmp_path / "out").exists()

@@ -45,7 +45,7 @@ def test_the_workbook_lacks_the_shaking_alone_and_runs_with_it(cobie):
     assert run("check", out).exit_code == 0
 
 
-def test_furniture_that_was_left_out_is_named_and_ends_with_1(tmp_path):
+def test_furniture_that_was_left_out_is_named_and_ends_with_1_and_names_are_printed_clean(tmp_path):
     path = write_cobie(tmp_path / "h.xlsx", types=({**TYPES[0], "NominalHeight": "n/a"}, {**TYPES[0], "Name": "Rack"}),
                        components=(*COMPONENTS[:2], {**COMPONENTS[0], "TypeName": "Rack"}))  # fmt: skip
     done = run("import", path, "-o", tmp_path / "b.xlsx")
@@ -55,22 +55,23 @@ def test_furniture_that_was_left_out_is_named_and_ends_with_1(tmp_path):
         "2 pieces left out (no NominalHeight): Bookcase A (2).",
     ]
     assert (tmp_path / "b.xlsx").exists()
-
-
-@pytest.mark.parametrize("share", [0.2, 0.95])
-def test_a_damaged_file_leaves_nothing(cobie, share):
-    data = cobie.read_bytes()
-    cobie.write_bytes(data[: int(share * len(data))])
-    out = cobie.with_name("building.xlsx")
-    assert "handover.xlsx is" in error(run("import", cobie, "-o", out))
-    assert [one.name for one in cobie.parent.iterdir()] == ["handover.xlsx"]
-
-
-def test_names_that_command_a_terminal_are_printed_clean(tmp_path):
     rows = one_type(Name="Rack \u202e[31m", NominalHeight=None)
     rows["components"] = ({**COMPONENTS[0], "TypeName": "Rack \u202e[31m"},)
-    done = run("import", write_cobie(tmp_path / "h.xlsx", **rows), "-o", tmp_path / "b.xlsx")
+    done = run("import", write_cobie(tmp_path / "c.xlsx", **rows), "-o", tmp_path / "d.xlsx")
     assert "Rack [31m (1)" in done.stdout
+
+
+def test_damaged_and_truncated_files_leave_nothing(cobie, tmp_path):
+    for data, name, message, shares in (
+        (cobie.read_bytes(), "handover.xlsx", "handover.xlsx is", (0.2, 0.95)),
+        (DUPLEX.read_bytes(), "a.ifc", "a.ifc cannot be read: it is", (0.0, 0.3, 0.99)),
+    ):
+        path = tmp_path / f"of {name}" / name
+        path.parent.mkdir()
+        for share in shares:
+            path.write_bytes(data[: int(share * len(data))])
+            assert message in error(run("import", path, "-o", path.with_name("b.xlsx"))), share
+            assert [one.name for one in path.parent.iterdir()] == [name], share
 
 
 # ---------------------------------------------------------------- building models
@@ -183,14 +184,6 @@ def test_an_update_keeps_what_people_typed_and_lists_what_changed(duplex):
     assert (first.anchored, first.weight, first.notes) == ("yes", 55.0, "ours")
 
 
-def test_an_update_without_changes_leaves_every_byte(duplex):
-    before = duplex.read_bytes()
-    done = run("import", MODELS / "duplex.ifc", "-o", duplex, "--update")
-    assert "The workbook is up to date with the model: nothing was changed." in done.stdout
-    assert duplex.read_bytes() == before
-    assert done.stderr.startswith(f"{duplex} stays as it is; wrote this list beside it. Now run: assess check")
-
-
 @pytest.mark.slow
 def test_what_people_save_while_an_update_reads_the_model_is_not_lost(duplex, monkeypatch):
     from assess.bim import read_source
@@ -215,14 +208,17 @@ def test_what_people_save_while_an_update_reads_the_model_is_not_lost(duplex, mo
     assert second.notes == "typed meanwhile"
 
 
-def test_an_update_replaces_plans_of_imports_alone(duplex):
-    folder = duplex.parent
+def test_an_update_replaces_plans_of_imports_alone_and_without_changes_leaves_every_byte(duplex):
+    folder, before = duplex.parent, duplex.read_bytes()
+    done = run("import", MODELS / "duplex.ifc", "-o", duplex, "--update")
+    assert "The workbook is up to date with the model: nothing was changed." in done.stdout
+    assert duplex.read_bytes() == before
+    assert done.stderr.startswith(f"{duplex} stays as it is; wrote this list beside it. Now run: assess check")
     plans = [folder / f"duplex-{name}.svg" for name in ("Level-1", "Level-2", "Roof")]
     data = [plan.read_bytes() for plan in plans]
     plans[0].write_bytes(b"<svg>drawn by people</svg>")
     plans[1].unlink()
     plans[2].write_bytes(data[2].replace(b"</svg>", b"<!-- of an older model --></svg>"))
-    before = duplex.read_bytes()
     done = run("import", DUPLEX, "-o", duplex, "--update")
     assert "stays as it is: duplex-Level-1.svg is not a plan of the import" in done.stdout
     assert f"{duplex} stays as it is; wrote 2 plans and this list beside it" in done.stderr
@@ -271,11 +267,3 @@ def test_a_model_without_furniture_gives_storeys_and_rooms(tmp_path):
     assert {one.name for one in tmp_path.iterdir()} == {"a.ifc", "b.xlsx", "a-Level-1.svg", "a-import.txt"}
     checked = run("check", tmp_path / "b.xlsx")
     assert (checked.exit_code, "is incomplete" in checked.stderr) == (1, True)
-
-
-@pytest.mark.parametrize("share", [0.0, 0.3, 0.99])
-def test_a_truncated_model_leaves_nothing(tmp_path, share):
-    data = (MODELS / "duplex.ifc").read_bytes()
-    (tmp_path / "a.ifc").write_bytes(data[: int(share * len(data))])
-    assert "a.ifc cannot be read: it is" in error(run("import", tmp_path / "a.ifc", "-o", tmp_path / "b.xlsx"))
-    assert [one.name for one in tmp_path.iterdir()] == ["a.ifc"]

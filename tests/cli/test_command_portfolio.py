@@ -32,8 +32,9 @@ def _call(*words, formats="parquet"):
 
 
 @pytest.mark.slow
-def test_a_folder_is_assessed_and_told_in_words(tmp_path):
-    result = _call(_write(tmp_path), "--out", tmp_path / "out")
+def test_a_folder_is_assessed_and_told_in_words_and_the_same_command_goes_on_from_what_is_there(tmp_path):
+    city = _write(tmp_path)
+    result = _call(city, "--out", tmp_path / "out")
     assert result.exit_code == 0
     assert result.stdout.startswith("2 buildings assessed, 0 skipped.\nEvery building has the ground motion of its own")
     assert "Surveyed buildings, by formula only: 10 pieces, 2 anchored." in result.stdout
@@ -46,6 +47,8 @@ def test_a_folder_is_assessed_and_told_in_words(tmp_path):
     assert notes["path"].tolist() == ["b01.xlsx"]
     assert "same content as b00.xlsx: it counts as a building of its own" in notes["message"].iloc[0]
     assert f"wrote {tmp_path / 'out' / 'pieces.parquet'}" in result.stderr
+    again = _call(city, "--out", tmp_path / "out").stdout
+    assert "2 buildings assessed (2 of them by an earlier run), 0 skipped." in again
 
 
 @pytest.mark.slow
@@ -59,16 +62,6 @@ def test_a_skipped_building_is_named_and_the_exit_status_is_1(tmp_path):
     assert "\x1b" not in result.stderr
     assert re.search(r"^error  bad.*\.xlsx: skipped\. .* is not an Excel workbook", result.stderr, re.MULTILINE)
     assert "error  unshaken.xlsx: skipped. " in result.stderr
-
-
-@pytest.mark.slow
-def test_the_same_command_goes_on_from_what_is_there(tmp_path):
-    city = _write(tmp_path)
-    _call(city, "--out", tmp_path / "out")
-    assert (
-        "2 buildings assessed (2 of them by an earlier run), 0 skipped."
-        in _call(city, "--out", tmp_path / "out").stdout
-    )
 
 
 @pytest.mark.slow

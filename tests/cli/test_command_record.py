@@ -17,7 +17,7 @@ ROOF, SWEEP, VELOCITY = (
 
 
 def record(*arguments: object):
-    return run("record", *map(str, arguments))
+    return run("record", *arguments)
 
 
 def test_the_document_is_the_one_of_the_contract():
@@ -37,13 +37,10 @@ def test_the_document_is_the_one_of_the_contract():
     assert len(spectrum["periods_s"]) == len(spectrum["pseudo_acceleration_g"])
 
 
-def test_one_channel_of_a_file_and_several_files():
+def test_channels_of_files_and_of_a_set_in_a_zip_archive(tmp_path):
     one, several = json.loads(record(f"{SWEEP}#east", SWEEP, "--json").stdout)
     assert [(each["channel"], each["name"]) for each in one["channels"]] == [("east", "made-up-sweep.csv#east")]
     assert len(several["channels"]) == 3
-
-
-def test_a_set_in_a_zip_archive(tmp_path):
     (tmp_path / "set.zip").write_bytes(zipped({"CHAN.V2": csmip_v2(*THREE), "README.txt": b"hello"}))
     done = record(tmp_path / "set.zip")
     assert "set.zip: CSMIP V2, 3 channels" in done.stdout
@@ -63,26 +60,19 @@ def test_a_file_that_cannot_be_read_is_named_and_the_others_are_told(tmp_path):
 
 
 @pytest.mark.slow
-def test_the_figure_has_three_panels_a_channel(tmp_path):
+def test_the_figure_has_three_panels_a_channel_of_the_first_ones(tmp_path):
     path = tmp_path / "figure.svg"
     done = record(SWEEP, "--plot", path)
     assert (done.exit_code, done.stderr) == (0, f"wrote {path}\n")
     assert sum(1 for one in ET.parse(path).iter() if str(one.get("id", "")).startswith("axes_")) == 9
-
-
-@pytest.mark.slow
-def test_only_the_first_channels_are_drawn_and_the_rest_is_said(tmp_path):
     done = record(*[SWEEP] * 5, "--plot", tmp_path / "many.png")
     assert "3 more channels not drawn" in done.stderr
 
 
-def test_a_name_with_a_hash_is_a_file_first(tmp_path):
+def test_a_name_with_a_hash_is_a_file_first_and_names_are_what_finds_the_channels_again(tmp_path):
     path = tmp_path / "set#1.csv"
     path.write_bytes(SWEEP.read_bytes())
     assert len(read_channels(str(path))) == 3
-
-
-def test_the_names_are_what_finds_the_channels_again(tmp_path):
     both = {"a/CHAN.V2": csmip_v2(*THREE), "b/CHAN.V2": csmip_v2(*THREE)}
     (tmp_path / "set.zip").write_bytes(zipped(both))
     channels = read_channels(str(tmp_path / "set.zip"))

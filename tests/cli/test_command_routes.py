@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -20,6 +21,7 @@ from assess.rocking.draws import Uncertainty
 from assess.route_results import Chance, PieceRef
 from assess.units import GRAVITY
 from tests.cli.calling import run
+from tests.refusals import check_refusals
 from tests.shaking import write_records
 from tests.workbooks import write_sheets
 
@@ -41,10 +43,8 @@ SWEEP = ("--pfa", "0.1:0.9:0.2", "--runs", "20", "--seed", "3")
 
 def write(folder: Path, **rows: Any) -> Path:
     write_records(folder, "slow")
-    path = folder / "w.xlsx"
     content = {"Building": [{"period": 1.0}], "Floors": FLOORS, "Items": ITEMS, "Routes": ROUTES, **rows}
-    write_sheets(path, content)
-    return path
+    return write_sheets(folder / "w.xlsx", content)
 
 
 @pytest.fixture(scope="module")
@@ -154,9 +154,7 @@ def swept_with(chances: list[float], spread: float, anchors: list[float] | None 
 
     route = RouteFragility(
         route="A", floors=(), blocked=tuple(map(chance, chances)), scenario_pfa=(1.5, 2.5), is_evaluated=True,
-        unevaluated=(),
-        if_anchors_fail=anchors and tuple(map(chance, anchors)), doubtful=0,
-        causes=(),
+        unevaluated=(), if_anchors_fail=anchors and tuple(map(chance, anchors)), doubtful=0, causes=(),
     )  # fmt: skip
     values = tuple(GRAVITY * (1 + at) / 10 for at in range(len(chances)))
     found = Fragility(
@@ -216,9 +214,8 @@ def test_the_figure_draws_what_can_be_blocked_eight_a_panel():
 # --- what is wrong ---
 
 
-@pytest.mark.parametrize(
-    ("pfa", "message"),
-    [
+def test_values_that_are_none():
+    cases = [
         ("0.1", "--pfa: '0.1' is not LOW:HIGH or LOW:HIGH:STEP in g, as 0.1:1.0 or 0.1:1.0:0.05."),
         ("a:b", "--pfa: 'a:b' is not LOW:HIGH"),
         ("0,1:1,0", "--pfa: '0,1:1,0' is not LOW:HIGH"),
@@ -231,26 +228,16 @@ def test_the_figure_draws_what_can_be_blocked_eight_a_panel():
         ("0.1:1:0", "--pfa: the step is 0 g, expected above 0."),
         ("0.1:1.0:0.01", "--pfa: 0.1:1.0:0.01 gives over 50 values. Take a larger step."),
         ("0.1:1.0:0.000000000001", "gives over 50 values"),
-    ],
-)
-def test_values_that_are_none(pfa, message):
-    with pytest.raises(assess.InputError) as caught:
-        PFA.read(pfa)
-    assert message in str(caught.value)
+    ]
+    check_refusals(assess.InputError, PFA.read, [(pfa, re.escape(message)) for pfa, message in cases])
 
 
-@pytest.mark.parametrize(
-    ("text", "values"),
-    [
+def test_values():
+    for text, values in (
         ("0.1:0.35", [0.1, 0.15, 0.2, 0.25, 0.3, 0.35]),
         ("0.3:0.3", [0.3]),
         (" .1:0.22 ", [0.1, 0.15, 0.2, 0.22]),
         ("0.30:0.32:1", [0.3, 0.32]),
         ("0.1:5:0.1", [round(0.1 * at, 1) for at in range(1, 51)]),
-    ],
-)
-def test_values(text, values):
-    assert PFA.read(text) == values
-
-
-# --- the option of assess run, and the help ---
+    ):
+        assert PFA.read(text) == values, text

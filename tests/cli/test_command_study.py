@@ -19,7 +19,7 @@ NAMES = ["table1", "solver", "table2", "calibration", "contours", "table3", "fit
 
 
 def study(*words):
-    return run("study", *map(str, words))
+    return run("study", *words)
 
 
 def made_up(name, order=1, takes=(), of=lambda _: Finding(page=["a page"], summary=["a sentence"])):
@@ -36,9 +36,6 @@ def two(monkeypatch):
 
     studies = made_up("first", 1, {"records", "breadth"}, tell("first")), made_up("second", 2, of=tell("second"))
     monkeypatch.setattr(assess.studies, "all_studies", lambda: studies)
-
-
-# ---------------------------------------------------------------- what there is
 
 
 def test_all_studies_are_there_with_what_they_take():
@@ -148,7 +145,7 @@ def test_a_file_in_place_of_the_folder_is_told_before_the_work(tmp_path, monkeyp
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_looking_whether_a_folder_can_be_written_to_leaves_nothing(tmp_path, monkeypatch):
+def test_looking_whether_a_folder_can_be_written_to_leaves_nothing_and_a_full_disk_is_told(tmp_path, monkeypatch):
     check_folder(tmp_path / "new" / "and" / "more")
     assert not list(tmp_path.iterdir())
 
@@ -158,6 +155,15 @@ def test_looking_whether_a_folder_can_be_written_to_leaves_nothing(tmp_path, mon
     monkeypatch.setattr("tempfile.mkdtemp", refuse)
     with pytest.raises(OutputError, match=r"new could not be written: Permission denied\."):
         check_folder(tmp_path / "new")
+
+    def fail(*_args, **_more):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.undo()
+    monkeypatch.setattr("os.fsync", fail)
+    with pytest.raises(OutputError, match=r"No space left on device\. Make room, or name another folder"):
+        load_or_compute(tmp_path / PARTS, "one", dict)
+    assert list(tmp_path.iterdir()) == []
 
 
 # ---------------------------------------------------------------- records of one's own
@@ -230,13 +236,3 @@ def test_a_request_to_end_is_as_before_afterwards(tmp_path):
     before = signal.getsignal(signal.SIGTERM)
     assert study("table3", "--out", tmp_path).exit_code == 0
     assert signal.getsignal(signal.SIGTERM) is before
-
-
-def test_a_full_disk_is_told(tmp_path, monkeypatch):
-    def fail(*_args, **_more):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("os.fsync", fail)
-    with pytest.raises(OutputError, match=r"No space left on device\. Make room, or name another folder"):
-        load_or_compute(tmp_path / PARTS, "one", dict)
-    assert list(tmp_path.iterdir()) == []

@@ -40,8 +40,9 @@ def test_the_help_of_each_command_has_examples_that_show_its_options():
         assert options - shown <= ({"--jobs", "--seed", "--runs", "--scenario"} if name != "run" else set())
 
 
-def test_help_loads_nothing_heavy():
+def test_version_and_help_load_nothing_heavy():
     """Nor does any file of a command, when it is found."""
+    assert run(app, ["--version"]).output == f"assess {assess.__version__}\n"
     heavy = ("numpy", "scipy", "numba", "openpyxl", "jinja2", "matplotlib", "babel", "assess.studies", "assess.report")
     code = (
         "import sys\nsys.argv = ['assess', '--help']\nfrom assess.cli.app import main\n"
@@ -49,10 +50,6 @@ def test_help_loads_nothing_heavy():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=PATIENCE, check=False)
     assert done.stdout.splitlines()[-1] == "[]", done.stderr
-
-
-def test_version():
-    assert run(app, ["--version"]).output == f"assess {assess.__version__}\n"
 
 
 @pytest.mark.parametrize("units", ["si", "imperial"])
@@ -86,12 +83,9 @@ def test_scale_and_ideal_reach_the_settings(tmp_path, monkeypatch):
     ]  # fmt: skip
 
 
-def test_a_number_with_more_digits_than_are_read_is_refused(tmp_path):
+def test_numbers_with_more_digits_than_are_read_are_refused_and_scenarios_accepted_in_any_spelling(tmp_path):
     done = run(app, ["run", str(write(tmp_path / "w.xlsx")), "--runs", "9" * 5000, "--out", str(tmp_path / "out")])
     assert (done.exit_code, "--runs is '999" in done.stderr) == (2, True)
-
-
-def test_a_scenario_is_accepted_in_any_spelling(tmp_path):
     path = write(tmp_path / "w.xlsx", floors=[{"floor": at, "elevation": at} for at in (1, 2)], ground_pga=0.2)
     done = run(app, [*RUN, str(path), "--out", str(tmp_path / "out"), "--formats", "json", "--scenario", "asce7-22"])
     assert done.exit_code == 0, done.stderr
@@ -113,20 +107,17 @@ def test_doctor_finds_all_that_is_installed_here():
     assert "pytest" not in done.output
 
 
-@pytest.mark.parametrize(
-    ("one", "works", "detail"),
-    [
+def test_doctor_says_how_to_fix_it():
+    for one, works, detail in (
         (Requirement("typer", "0.1", ""), True, version("typer")),
         (Requirement("typer", "0.3", ""), True, version("typer")),  # of 0.27, by the numbers
         (Requirement("typer", "999.1", ""), False, f'{version("typer")} is too old: pip install "typer>=999.1"'),
         (Requirement("no-such", "2.0", ""), False, 'not installed: pip install "no-such>=2.0"'),
         (Requirement("no-such", "", "maps"), True, f"optional, not installed. {say_install('maps')}"),
         (Requirement("typer", "", "maps"), True, f"{version('typer')} (optional: maps)"),
-    ],
-)
-def test_doctor_says_how_to_fix_it(one, works, detail):
-    found = command_doctor.examine_package(one)
-    assert (found.works, found.detail) == (works, detail)
+    ):
+        found = command_doctor.examine_package(one)
+        assert (found.works, found.detail) == (works, detail), one
 
 
 def test_doctor_reads_the_project_file_where_assess_is_not_installed(monkeypatch):

@@ -39,14 +39,16 @@ def complete(line):
     return said.getvalue().split()
 
 
-def test_all_commands_are_offered():
+def test_all_commands_are_offered_and_a_scenario_is_understood_as_it_is_completed():
     assert sorted(complete("assess ")) == sorted(list_names())
     assert complete("assess r") == ["run", "routes", "rock", "record"]
+    offered = complete("assess run --scenario ")
+    assert [Settings(scenario=one).scenario for one in offered] == list(SCENARIOS)
+    assert not any(" " in one for one in offered)
 
 
-@pytest.mark.parametrize(
-    ("line", "offered"),
-    [
+def test_options_and_values():
+    for line, offered in (
         ("assess run b.xlsx --sc", ["--scale-motions", "--scenario", "--scale"]),
         ("assess run b.xlsx --open --o", ["--out"]),
         ("assess run b.xlsx --verify ", list(VERIFY)),
@@ -54,10 +56,8 @@ def test_all_commands_are_offered():
         ("assess run b.xlsx --scenario ASCE", ["ASCE-7-22", "ASCE-7-16"]),
         ("assess routes b.xlsx --scenario en", ["en-1998-1"]),
         ("assess run b.xlsx --formats pdf,h", ["pdf,html"]),
-        (
-            "assess run b.xlsx --formats pdf,xlsx,html,json,",
-            [f"pdf,xlsx,html,json,{one}" for one in ("annex", "csv", "docx", "npz", "parquet", "all")],
-        ),
+        ("assess run b.xlsx --formats pdf,xlsx,html,json,",
+         [f"pdf,xlsx,html,json,{one}" for one in ("annex", "csv", "docx", "npz", "parquet", "all")]),
         ("assess new w.xlsx --language ", list(LANGUAGES)),
         ("assess new w.xlsx --units i", ["imperial"]),
         ("assess study t", ["table1", "table2", "table3"]),
@@ -65,16 +65,8 @@ def test_all_commands_are_offered():
         ("assess fragility b.xlsx --formats ", ["csv", "json", "pelicun", "nrml"]),
         ("assess rock --baseline ", ["standard", "none"]),
         ("assess run ", []),  # files are the shell's own
-    ],
-)
-def test_options_and_values(line, offered):
-    assert complete(line) == offered
-
-
-def test_a_scenario_is_understood_as_it_is_completed():
-    offered = complete("assess run --scenario ")
-    assert [Settings(scenario=one).scenario for one in offered] == list(SCENARIOS)
-    assert not any(" " in one for one in offered)
+    ):  # fmt: skip
+        assert complete(line) == offered, line
 
 
 def test_the_formats_are_those_that_can_be_written():
@@ -87,7 +79,7 @@ def test_the_formats_are_those_that_can_be_written():
     assert (*comparison_files.FORMATS, "json") == command_compare.FORMATS
 
 
-def test_zsh_and_fish_get_help_whole_on_one_line():
+def test_zsh_fish_and_powershell_get_help_whole_on_one_line():
     line = {"_TYPER_COMPLETE_ARGS": "assess run b.xlsx --sce"}
     zsh = ask(line | {ASKED: "complete_zsh"})
     assert '"--scenario":"Source of the floor motion' in zsh
@@ -96,9 +88,6 @@ def test_zsh_and_fish_get_help_whole_on_one_line():
     (offered,) = fish.splitlines()
     assert offered.startswith("--scenario\tSource")
     assert "NTC 2018" in offered
-
-
-def test_powershell_gets_words_and_help():
     line = {"_TYPER_COMPLETE_ARGS": "assess run b.xlsx --open --ver", "_TYPER_COMPLETE_WORD_TO_COMPLETE": "--ver"}
     (offered,) = ask(line | {ASKED: "complete_powershell"}).splitlines()
     assert offered.startswith("--verify:::Pieces to simulate")

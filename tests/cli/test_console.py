@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import threading
+from types import SimpleNamespace
 from typing import Annotated
 
 import pytest
@@ -21,19 +22,11 @@ class Terminal(io.StringIO):
         return True
 
 
-class Clock:
-    """Time that passes when a test sets it."""
-
-    def __init__(self):
-        self.now = 0.0
-
-    def monotonic(self):
-        return self.now
-
-
 @pytest.fixture
 def clock(monkeypatch):
-    clock = Clock()
+    """Time that passes when a test sets it."""
+    clock = SimpleNamespace(now=0.0)
+    clock.monotonic = lambda: clock.now
     monkeypatch.setattr(console, "time", clock)
     return clock
 
@@ -75,7 +68,7 @@ def shown(stream):
     return stream.getvalue().split("\r\x1b[K")[-1]
 
 
-def test_on_a_terminal_one_line_changes_and_is_removed(clock):
+def test_on_a_terminal_one_line_changes_and_is_removed_and_none_is_written_while_nothing_is_reported(clock):
     stream = Terminal()
     line = console._Line(stream)
     line(report(0.0))
@@ -90,6 +83,11 @@ def test_on_a_terminal_one_line_changes_and_is_removed(clock):
     assert shown(stream) == ""
     written = stream.getvalue()
     line.clear()
+    assert stream.getvalue() == written
+    line(report(0.0))
+    written = stream.getvalue()
+    clock.now = 100.0
+    line.repeat()
     assert stream.getvalue() == written
 
 
@@ -143,11 +141,7 @@ def run(error):
         (RecordError("runs: a file of this name"), 2, "error  runs: a file of this name\n"),
         (OutputError("the disk is full"), 1, "error  the disk is full\n"),
         (AssessError("something else"), 1, "error  something else\n"),
-        (
-            WorkbookError([Problem("error", "Items", "B2", "bad.")]),
-            2,
-            "error    Items!B2: bad.\n1 error; nothing",
-        ),
+        (WorkbookError([Problem("error", "Items", "B2", "bad.")]), 2, "error    Items!B2: bad.\n1 error; nothing"),
     ],
 )
 def test_errors_become_messages_that_name_options(capsys, error, status, message):
@@ -189,16 +183,6 @@ def test_a_line_repeats_what_was_reported_last(clock):
         "Writing pdf: 0 %, 12 s so far",
         "Working, 17 s so far",
     ]
-
-
-def test_a_terminal_is_not_written_to_while_nothing_is_reported(clock):
-    stream = Terminal()
-    line = console._Line(stream)
-    line(report(0.0))
-    written = stream.getvalue()
-    clock.now = 100.0
-    line.repeat()
-    assert stream.getvalue() == written
 
 
 SLOW = """

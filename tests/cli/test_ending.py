@@ -37,10 +37,9 @@ def one_line(done, status):
     text = done.stderr
     assert done.returncode == status, text
     assert "Traceback" not in text
-    assert [line for line in text.splitlines() if not line.startswith(("warning", "note", "Working"))] == [
-        text.splitlines()[-1]
-    ]
-    return text.splitlines()[-1]
+    last = text.splitlines()[-1]
+    assert [line for line in text.splitlines() if not line.startswith(("warning", "note", "Working"))] == [last]
+    return last
 
 
 # ---------------------------------------------------------------- names
@@ -63,7 +62,7 @@ def test_names_that_are_too_long(tmp_path, monkeypatch):
         assert [one.name for one in tmp_path.iterdir()] == ["book.xlsx"]
 
 
-def test_blank_words():
+def test_blank_words(tmp_path):
     for words, named in (
         (["run", "a.xlsx", "--out", ""], "--out"), (["run", "a.xlsx", "--motions="], "--motions"),
         (["run", "a.xlsx", "--template", " "], "--template"), (["check", " "], "word 2"),
@@ -71,9 +70,6 @@ def test_blank_words():
     ):  # fmt: skip
         found = find_blank(words)
         assert found == named or (named and found.startswith(named))
-
-
-def test_a_blank_folder_is_not_the_one_that_one_is_in(tmp_path):
     write(tmp_path / "book.xlsx")
     text = one_line(call(tmp_path, "run", "book.xlsx", "--verify", "none", "--out="), 2)
     assert text == "error  --out is blank: fill it in, or leave it out."

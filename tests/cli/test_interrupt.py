@@ -209,14 +209,13 @@ def test_a_signal_at_the_first_imports_or_moves(tmp_path, number, event, at):
 
 def _run_code(code, *words):
     """Return exit status and stderr of a process that runs some code; the code sends the signal."""
-    done = subprocess.run(
-        [sys.executable, "-c", HEAD + code, *words], capture_output=True, text=True, timeout=PATIENCE, check=False
-    )
+    command = [sys.executable, "-c", HEAD + code, *words]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)
     return done.returncode, done.stderr
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no signals to send")
-def test_what_an_interrupt_became_on_its_way_is_no_error(tmp_path):
+def test_what_an_interrupt_became_is_no_error_and_work_that_swallows_every_one_is_ended(tmp_path):
     """An import that is interrupted may raise ImportError, a compiled library anything."""
     code = (
         "interrupts.answer_signals()\n"
@@ -230,10 +229,6 @@ def test_what_an_interrupt_became_on_its_way_is_no_error(tmp_path):
         "console.guard(command)()"
     )
     assert _run_code(code) == (143, "\nInterrupted; nothing was written.\n")
-
-
-@pytest.mark.skipif(os.name == "nt", reason="no signals to send")
-def test_work_that_swallows_every_interrupt_is_ended(tmp_path):
     code = (
         "from pathlib import Path\n"
         "from assess.delivery.folders import make_folder\n"

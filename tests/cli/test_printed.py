@@ -146,11 +146,6 @@ def refuse() -> list[str]:
     return lines
 
 
-def differ_in_words(now: list[str], kept: list[str]) -> list[str]:
-    """Return the lines of one of which the other has not the words."""
-    return sorted({strip_numbers(line) for line in now} ^ {strip_numbers(line) for line in kept})
-
-
 def read(path: Path) -> Iterator[str]:
     """Yield the lines of a file."""
     if path.suffix == ".html":
@@ -185,6 +180,9 @@ def folder(tmp_path_factory):
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.slow] * (name == "import")) for name in CALLS])
 def test_commands_print_what_they_printed(folder, monkeypatch, differ, name):
+    def differ_in_words(now: list[str], kept: list[str]) -> list[str]:
+        return sorted({strip_numbers(line) for line in now} ^ {strip_numbers(line) for line in kept})
+
     monkeypatch.chdir(folder)
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1767225600")
     assert differ(name, show(name), differ_in_words if name in SIMULATED else differences) == []

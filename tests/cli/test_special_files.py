@@ -38,16 +38,13 @@ def test_what_is_no_file_is_refused_at_once(place):
             assert not (place / "new.xlsx").exists()
 
 
-def test_a_name_that_is_not_utf_8_is_shown_as_far_as_it_can_be(place):
+def test_names_that_are_not_utf_8_are_shown_as_far_as_they_can_be_and_command_no_terminal(place):
     name = os.fsdecode(b"b\xff\xfe.xlsx")
     shutil.copy("w.xlsx", name)
     done = run("run", name, "--verify", "none", "--formats", "json,xlsx,html,csv", "--out", "out")
     assert done.exit_code == 0, done.output
     found = json.loads((place / "out" / "results.json").read_bytes())
     assert found["assess"]["inputs"]["workbook"] == "b\ufffd\ufffd.xlsx"
-
-
-def test_a_name_commands_no_terminal(place):
     name = "a\x1b]0;PWN\x07.xlsx"
     shutil.copy("w.xlsx", name)
     for words in (("run", name, "--verify", "none", "--formats", "json"), ("check", name, "--fix", "b\x1b[2J.xlsx")):

@@ -49,7 +49,14 @@ def make_view(count=40, *, draws=200):
             tables["buildings"].append({"path": path, "status": "skipped", "inventory": None, "warnings": 0})
             tables["problems"].append({"path": path, "severity": "error", "message": "height is 1.8 cm."})
             continue
-        pieces = list(_list_pieces(path, random.beta(0.6, 2.2, 12)))
+        pieces = [
+            PIECE | {
+                "path": path, "item": f"1-{k:02}", "type": TYPES[k % len(TYPES)], "quantity": 1 + k % 3,
+                "is_held": k == 5, "probability": chance, "risk_class": classify(chance).word, "row": k + 2,
+                "work_place": k + 1 if chance > 0.1 and k != 5 else None,
+                "detail": "L-bracket to studs" if chance > 0.1 and k != 5 else None,
+            } for k, chance in enumerate(random.beta(0.6, 2.2, 12))
+        ]  # fmt: skip
         free = [row for row in pieces if not row["is_held"]]
         expected = sum(row["quantity"] * row["probability"] for row in free)
         falls, has_routes = random.poisson(expected, draws), at % 3 != 0
@@ -76,13 +83,3 @@ def make_view(count=40, *, draws=200):
         ]
     ground = RunGround(kind="shakemap", file="grid.xml", sha256="0" * 64, facts=((fill("Event"), fill("Loma Prieta")),))
     return City(**{name: frame(name, rows) for name, rows in tables.items()}, settings=Settings(), ground=ground)
-
-
-def _list_pieces(path, chances):
-    for at, chance in enumerate(chances):
-        is_fixed = chance > 0.1 and at != 5
-        yield PIECE | {
-            "path": path, "item": f"1-{at:02}", "type": TYPES[at % len(TYPES)], "quantity": 1 + at % 3,
-            "is_held": at == 5, "probability": chance, "risk_class": classify(chance).word, "row": at + 2,
-            "work_place": at + 1 if is_fixed else None, "detail": "L-bracket to studs" if is_fixed else None,
-        }  # fmt: skip

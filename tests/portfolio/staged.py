@@ -68,13 +68,8 @@ def write_city(folder, latitudes, **building):
 
 def write_building(path, **building):
     """Write a small workbook whose shaking is not known."""
-    rows = {
-        "Building": [{"height": 7, **building}],
-        "Floors": [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 3.5}],
-        "Items": list(ITEMS),
-    }
-    write_sheets(path, rows)
-    return path
+    floors = [{"floor": "1", "elevation": 0}, {"floor": "2", "elevation": 3.5}]
+    return write_sheets(path, {"Building": [{"height": 7, **building}], "Floors": floors, "Items": list(ITEMS)})
 
 
 def read_results(out):
