@@ -83,11 +83,11 @@ def test_workbooks(tmp_path: Path) -> None:
 
 
 def test_locked_and_damaged(tmp_path: Path) -> None:
-    data = bytearray(zipped({"a.V2": csmip_v2(EAST)}))
+    locked = bytearray(zipped({"a.V2": csmip_v2(EAST)}))
     for start, flags in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
-        data[data.index(start) + flags] |= 1
+        locked[locked.index(start) + flags] |= 1
     with pytest.raises(RecordError, match=r"a\.V2 is locked with a password: unpack the archive"):
-        read_set(tmp_path, bytes(data))
+        read_set(tmp_path, bytes(locked))
     data = zipped({"a.V2": csmip_v2(EAST)})
     with pytest.raises(RecordError, match=r"the zip archive is damaged: its directory cannot be read\. Get it again"):
         read_set(tmp_path, data[:-40])

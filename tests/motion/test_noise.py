@@ -121,5 +121,5 @@ def test_noise_is_drawn_once_for_all_floors_and_what_is_kept_is_bounded(monkeypa
         assert noise.KEPT.nbytes <= 2 * first.nbytes
     again = draw_bands(Phases(GRID, 1, "X"), 0, SILENT)
     assert again is not first
-    for one, other in zip(again.octaves, first.octaves, strict=True):
-        np.testing.assert_array_equal(one, other)
+    for now, before in zip(again.octaves, first.octaves, strict=True):
+        np.testing.assert_array_equal(now, before)

@@ -8,6 +8,7 @@ import pytest
 from assess.errors import InputError
 from assess.portfolio import background as module
 from assess.portfolio.background import read_background
+from tests.refusals import check_refusals
 
 BAY = Path(__file__).parents[2] / "samples" / "backgrounds" / "san-francisco-bay.geojson"
 SQUARE = [[-122.0, 37.0], [-121.0, 37.0], [-121.0, 38.0], [-122.0, 37.0]]
@@ -50,9 +51,8 @@ def test_all_kinds_of_geometry_are_drawn_and_points_are_left_out(tmp_path):
     assert len(found.lines) == 4
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
+def test_what_cannot_be_drawn_is_refused_with_its_place(tmp_path):
+    cases = [
         ('{"type": "FeatureCollection", "features": [', r"column 44: it is not GeoJSON, or the file is cut off"),
         ('{"type": "LineString", "coordinates": [[0, 0], [NaN, 1]]}', r"which is not a JSON number\. Remove"),
         (_of("LineString", [[0, 0], [545000, 4180000]]), r"\[545000, 4.18e\+06\] is not \[longitude, latitude\]"),
@@ -69,23 +69,17 @@ def test_all_kinds_of_geometry_are_drawn_and_points_are_left_out(tmp_path):
         ("path,building\na,b\n", r"it is not GeoJSON"),
         (_of("LineString", SQUARE) | {"crs": {"properties": {"name": "EPSG:26910"}}}, r"another system than WGS 84"),
         ("[" * 200_000, r"nested too deep|cut off"),
-    ],
-)  # fmt: skip
-def test_what_cannot_be_drawn_is_refused_with_its_place(tmp_path, text, message):
-    with pytest.raises(InputError, match=message) as caught:
-        read_background(_write(tmp_path, text))
-    assert str(caught.value).startswith("background back.geojson: ")
+    ]  # fmt: skip
+    placed = [(text, rf"(?s)^background back\.geojson: .*({message})") for text, message in cases]
+    check_refusals(InputError, lambda text: read_background(_write(tmp_path, text)), placed)
 
 
-def test_a_binary_file_and_a_missing_one_are_told(tmp_path):
+def test_binary_missing_and_too_large_files_are_told(tmp_path, monkeypatch):
     (tmp_path / "a.shp").write_bytes(b"\x00\x00\x27\x0a\xff\xfe")
     with pytest.raises(InputError, match=r"not UTF-8 text, so it is not GeoJSON.*exported as GeoJSON"):
         read_background(tmp_path / "a.shp")
     with pytest.raises(InputError, match=r"background no\.geojson: it cannot be read \(No such file"):
         read_background(tmp_path / "no.geojson")
-
-
-def test_too_many_points_and_too_many_bytes_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "MOST_POINTS", 3)
     with pytest.raises(InputError, match="more than 3 points"):
         read_background(_write(tmp_path, _of("Polygon", [SQUARE])))

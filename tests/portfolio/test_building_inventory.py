@@ -11,6 +11,7 @@ from assess.portfolio.building_inventory import Quantity, _is_near, build_assume
 from assess.portfolio.sources import IndexRow, Source
 from assess.workbook.read import read_inventory
 from tests.bim.cobie_files import one_type, write_cobie
+from tests.refusals import check_refusals
 from tests.workbooks import write_sheets
 
 SHAKEN = IndexRow(path="c.xlsx", ground_pga_g=0.3)
@@ -20,7 +21,8 @@ def _read(source, file=None):
     return read_building(source, None if file is None else file.read_bytes(), None)
 
 
-def test_a_cobie_file_is_handed_over_and_says_what_was_left_out(tmp_path):
+def test_a_cobie_file_is_handed_over_as_its_imported_workbook_and_says_what_was_left_out(tmp_path):
+    """A building of a city can be assessed alone: import it, and run the workbook."""
     path = write_cobie(tmp_path / "c.xlsx")
     origin, inventory = _read(Source(path="c.xlsx", file=path, index=SHAKEN), path)
     assert origin.inventory == "handover"
@@ -28,12 +30,6 @@ def test_a_cobie_file_is_handed_over_and_says_what_was_left_out(tmp_path):
     messages = [one.message for one in inventory.problems]
     assert "1 component left out (AssetType is Fixed): Door B (1)." in messages
     assert origin.left_out == 0, "a door is no furniture"
-
-
-def test_a_cobie_file_is_as_its_imported_workbook(tmp_path):
-    """A building of a city can be assessed alone: import it, and run the workbook."""
-    path = write_cobie(tmp_path / "c.xlsx")
-    _, inventory = _read(Source(path="c.xlsx", file=path, index=SHAKEN), path)
     alone = read_inventory(build_workbook(read_cobie(path, "c.xlsx")), building={"ground_pga": 0.3})
     for name in ("item", "floor", "breadth", "height", "type"):
         assert [getattr(one, name) for one in inventory.items] == [getattr(one, name) for one in alone.items]
@@ -79,7 +75,7 @@ def _warn(tmp_path, **index):
     return [one for one in inventory.problems if one.severity == "warning" and "the index says" in one.message]
 
 
-def test_an_index_that_contradicts_its_workbook_is_told_in_one_warning(tmp_path):
+def test_an_index_that_contradicts_its_workbook_is_told_in_one_warning_and_one_that_says_the_same_in_none(tmp_path):
     row = {"building": "Library", "latitude": 38, "longitude": -121, "use": "Shop", "storeys": 4, "height_m": 14}
     (warning,) = _warn(tmp_path, **row)
     assert warning.message == (
@@ -88,9 +84,6 @@ def test_an_index_that_contradicts_its_workbook_is_told_in_one_warning(tmp_path)
     )
     assert warning.fix == "Check that the line of the index belongs to this workbook."
     assert warning.sheet == "Building"
-
-
-def test_an_index_that_says_the_same_or_nothing_is_not_warned_of(tmp_path):
     for row in ({}, SAME, {"floor_area_m2": 500.0, "ground_pga_g": 0.4}):
         assert _warn(tmp_path, **row) == []
     assert _is_near(179.999, -179.999), "on two sides of the date line"
@@ -144,14 +137,11 @@ def test_quantities_by_use(use, expected):
     assert _count(replace(OFFICE, floor_area_m2=50.0))["lateral file"] == (0, 1, 1), "many buildings have one"
 
 
-def test_storeys_keep_the_quantities_of_the_building():
+def test_storeys_keep_the_quantities_of_the_building_and_what_is_left_over_stands_on_the_upper_ones():
     for area in (60.0, 1000.0, 33_333.0):
         whole = _count(replace(OFFICE, storeys=1, floor_area_m2=area))
         for storeys in (2, 7, 60):
             assert _count(replace(OFFICE, storeys=storeys, floor_area_m2=area)) == whole
-
-
-def test_what_is_left_over_stands_on_the_upper_storeys():
     assert spread_pieces(Quantity(2, 5, 9), 3) == [Quantity(0, 1, 3), Quantity(1, 2, 3), Quantity(1, 2, 3)]
     assert spread_pieces(Quantity(1, 2, 7), 4) == [
         Quantity(0, 0, 0), Quantity(0, 0, 0), Quantity(0, 1, 3), Quantity(1, 1, 4),
@@ -165,31 +155,21 @@ def test_uses_without_quantities_are_refused_with_the_reason():
             build_assumed(replace(OFFICE, use=use))
 
 
-@pytest.mark.parametrize(
-    ("blank", "message"),
-    [
+def test_what_is_needed():
+    check_refusals(InputError, lambda blank: build_assumed(replace(OFFICE, **blank)), [
         ({"use": ""}, r"^no inventory can be assumed without use\. Give it in the index"),
         ({"storeys": None}, r"^no inventory can be assumed without storeys\. Give it in"),
         ({"floor_area_m2": None, "storeys": None}, r"without storeys, floor_area_m2\."),
         ({"floor_area_m2": 5.0}, "for a floor area of 5 m2: FEMA P-58 gives less than one piece"),
-        (
-            {"floor_area_m2": 1e7},
-            "10,000,000 m2 on 4 storeys is more than 10,000 pieces of a kind a storey: check both",
-        ),
-    ],
-)
-def test_what_is_needed(blank, message):
-    with pytest.raises(InputError, match=message):
-        build_assumed(replace(OFFICE, **blank))
+        ({"floor_area_m2": 1e7},
+         "10,000,000 m2 on 4 storeys is more than 10,000 pieces of a kind a storey: check both"),
+    ])  # fmt: skip
 
 
-def test_a_blank_height_is_assumed_and_said():
+def test_it_is_an_inventory_with_the_sizes_of_p58_and_a_blank_height_is_assumed_and_said():
     _origin, rows, problems = build_assumed(replace(OFFICE, height_m=None))
     assert problems[1].message == "height_m is blank: 4 m a storey assumed, 16 m."
     assert rows["Building"][0]["height"] == 16.0
-
-
-def test_it_is_an_inventory_with_the_sizes_of_p58():
     _origin, rows, problems = build_assumed(OFFICE)
     assert problems[0].message.startswith(
         "inventory assumed: no piece of this building has been seen. 22 bookcases (5 to 43), 9 lateral files (5 to "

@@ -46,9 +46,14 @@ def view(buildings, pieces=(), draws=None):
 DRAWS = [(0, 0), (0, 0), (1, 10), (3, 10)]
 
 
-def test_a_city_of_skipped_buildings_has_no_sums():
+def test_cities_without_sums_and_made_up_ones():
     found = view([{"path": "bad", "status": "skipped", "inventory": None, "basis": None}])
     assert (found.groups, len(found.skipped)) == ((), 1)
+    names = [{"path": "a", "building": "Home 1 (made up)"}, {"path": "b", "building": "Home 2 (made up)"}]
+    unnamed = {"path": "bad.xlsx", "status": "skipped", "building": None}
+    assert view([*names, unnamed]).is_made_up
+    assert not view([*names, {"path": "c", "building": "City hall"}]).is_made_up
+    assert not view([unnamed]).is_made_up
 
 
 def test_buildings_with_most_people_on_blocked_routes_come_first_then_most_falls():
@@ -82,14 +87,6 @@ def test_types_with_most_expected_falls_come_first_and_blank_ones_by_size():
     ]
 
 
-def test_a_city_is_made_up_where_all_its_names_say_so():
-    names = [{"path": "a", "building": "Home 1 (made up)"}, {"path": "b", "building": "Home 2 (made up)"}]
-    unnamed = {"path": "bad.xlsx", "status": "skipped", "building": None}
-    assert view([*names, unnamed]).is_made_up
-    assert not view([*names, {"path": "c", "building": "City hall"}]).is_made_up
-    assert not view([unnamed]).is_made_up
-
-
 SHARED = SCATTERS["PGA"].shared
 RUNS = 2048
 DOCS = Path(__file__).parents[2] / "docs"
@@ -104,24 +101,16 @@ def grid(count, step_km=4.0):
     return np.stack([latitude, -122.4 + columns * step_km / (degree * np.cos(np.radians(latitude)))], axis=1)
 
 
-def find_distances(places):
-    """Return the distances of places from each other [km], (n, n)."""
-    phi, lam = np.radians(places).T
-    points = EARTH * np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)], axis=1)
-    return np.linalg.norm(points[:, None] - points[None], axis=2)
-
-
 def draw(places, runs=RUNS, seed=1):
     """Return the numbers of each place and draw, (n, runs)."""
     return np.array([Earthquakes(place=(float(lat), float(lon))).draw(seed, 0, runs) for lat, lon in places])
 
 
-def tabulate(falls, names=None):
+def tabulate(falls):
     """Return the table draws of buildings whose pieces fall so, (n, runs)."""
-    names = names or [f"{at:03d}.xlsx" for at in range(len(falls))]
     rows = [
-        {"path": name, "draw": k, "falls": int(n), "people_blocked": 0, "routes_blocked": 0}
-        for name, own in zip(names, falls, strict=True)
+        {"path": f"{at:03d}.xlsx", "draw": k, "falls": int(n), "people_blocked": 0, "routes_blocked": 0}
+        for at, own in enumerate(falls)
         for k, n in enumerate(own)
     ]
     return frame("draws", rows)
@@ -134,47 +123,41 @@ def city():
     return places, draw(places)
 
 
-def test_variance_of_a_sum_of_falls_is_that_of_both_parts(city):
+def test_variance_of_a_sum_of_falls_is_that_of_both_parts_and_one_more_building_changes_no_draw_of_another(city):
     """All pieces of a building fall in half of the draws: their covariance is asin(correlation)/2π."""
     places, numbers = city
     quantity = 1 + np.arange(len(places)) % 20
     falls = quantity[:, None] * (numbers > 0)
-    correlation = np.minimum(1, SHARED + (1 - SHARED) * np.exp(-3 * find_distances(places) / SCATTERS["PGA"].range_km))
+    phi, lam = np.radians(places).T
+    points = EARTH * np.stack([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)], axis=1)
+    distances = np.linalg.norm(points[:, None] - points[None], axis=2)  # km
+    correlation = np.minimum(1, SHARED + (1 - SHARED) * np.exp(-3 * distances / SCATTERS["PGA"].range_km))
     wanted = quantity @ (np.arcsin(correlation) / (2 * math.pi)) @ quantity
     assert falls.sum(axis=0).var() == pytest.approx(wanted, rel=4 * math.sqrt(2 / RUNS))
 
-
-def test_one_more_building_changes_no_draw_of_another(city):
-    places, numbers = city
     more = draw(np.concatenate([places[:50], [[37.8, -122.27]], places[50:60]]), 300)
     assert more[:50].tobytes() == numbers[:50, :300].tobytes()
     assert more[51:].tobytes() == numbers[50:60, :300].tobytes()
 
 
-def test_a_sum_over_buildings_is_made_draw_by_draw_in_any_order_of_rows():
+def test_a_sum_over_buildings_is_made_draw_by_draw_in_any_order_of_rows_and_what_has_no_draws_stands_apart():
     spread = build_spread(tabulate(np.array([[0, 1, 2, 3], [0, 10, 20, 30]])), "falls", 16.5, 100)
     assert (spread.low, spread.high, spread.draws) == (0, 33, 4)
     assert (spread.expected, spread.apart) == (16.5, 0)
     table = tabulate(np.random.default_rng(1).poisson(3, (5, 50)))
     shuffled = table.sample(frac=1, random_state=3)
     assert build_spread(shuffled, "falls", 15.0, 100) == build_spread(table, "falls", 15.0, 100)
-
-
-def test_what_has_no_draws_stands_apart():
     assert build_spread(tabulate([]), "falls", 7.5, 10).apart == 7.5
     assert build_spread(tabulate([]), "falls", 7.5, 10).low is None
     assert build_spread(tabulate([[2, 4]]), "falls", 5.0, 10).apart == pytest.approx(2)
 
 
-def test_the_interval_of_the_expected_number_is_that_of_a_mean():
+def test_the_interval_of_the_expected_number_is_that_of_a_mean_and_no_falls_do_not_show_that_nothing_falls():
     falls = np.random.default_rng(1).poisson(50, (1, 400))
     spread = build_spread(tabulate(falls), "falls", float(falls.mean()), 1000)
     half = 1.96 * falls.std(ddof=1) / 20
     assert spread.sampling_high - spread.sampling_low == pytest.approx(2 * half, rel=0.001)
-
-
-def test_no_falls_in_any_draw_do_not_show_that_nothing_falls():
-    """Of 200 draws none: Wilson's upper end is 1.88 %, and in such a draw every piece could fall."""
+    # of 200 draws none: Wilson's upper end is 1.88 %, and in such a draw every piece could fall
     assert find_sampling(np.zeros(200), 1000) == pytest.approx((0.0, 18.8), abs=0.1)
     rare = np.zeros(200)
     rare[7] = 30
@@ -230,16 +213,12 @@ def test_inventories_and_bases_are_never_in_one_sum(sums):
     assert [one["path"] for one in sums.skipped] == ["bad.xlsx"]
 
 
-def test_falls_have_a_range_over_earthquakes_where_they_were_simulated(sums):
+def test_falls_have_a_range_over_earthquakes_where_simulated_and_people_of_unknown_states_stand_apart(sums):
     surveyed = find(sums, "surveyed", "simulated").falls
     assert (surveyed.low, surveyed.high, surveyed.draws, surveyed.apart) == (0, 6, 4, 0)
     formula = find(sums, "surveyed", "formula").falls
     assert (formula.low, formula.draws, formula.apart) == (None, 0, 40.0)
-
-
-def test_people_on_routes_without_joint_outcomes_and_of_an_unknown_state_stand_apart(sums):
-    """Of 12 expected people 10 are in the draws."""
-    group = find(sums, "surveyed", "simulated")
+    group = find(sums, "surveyed", "simulated")  # of 12 expected people 10 are in the draws
     assert (group.people.expected, group.people.apart, group.people.high) == (12, pytest.approx(2), 20)
     assert (group.occupants, group.people_not_known, group.people_known) == (100, 30, 70)
     assert (group.routes[RouteState.NOT_KNOWN], group.routes[RouteState.OPEN]) == (2, 2)

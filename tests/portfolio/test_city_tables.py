@@ -27,11 +27,14 @@ def _write(name, rows, folder):
     return find_files(folder, name)
 
 
-def test_what_is_written_is_read_again(tmp_path):
-    rows = _rows(20)
+def test_what_is_written_is_read_again_also_from_a_folder_whose_name_is_no_sql(tmp_path):
+    rows, folder = _rows(20), tmp_path / "it's; DROP"
     (path,) = _write("pieces", rows, tmp_path)
     assert path.name == "pieces.parquet"
     pd.testing.assert_frame_equal(read_table(tmp_path, "pieces"), build_frame("pieces", rows))
+    folder.mkdir()
+    _write("routes", [], folder)
+    assert read_table(folder, "routes").empty
 
 
 @pytest.mark.slow
@@ -58,7 +61,7 @@ def test_the_same_rows_give_the_same_bytes(tmp_path):
     assert (tmp_path / "one" / path.name).read_bytes() == path.read_bytes()
 
 
-def test_what_cannot_be_read_is_named(tmp_path):
+def test_what_cannot_be_read_is_named_and_without_duckdb_one_line_says_what_to_install(tmp_path, monkeypatch):
     with pytest.raises(InputError, match="'rooms' is an unknown table; expected one of: buildings, pieces"):
         read_table(tmp_path, "rooms")
     with pytest.raises(InputError, match=r"there is no pieces.parquet"):
@@ -66,18 +69,7 @@ def test_what_cannot_be_read_is_named(tmp_path):
     (tmp_path / "pieces.parquet").write_bytes(b"PAR1 no more")
     with pytest.raises(InputError, match=r"pieces.parquet cannot be read"):
         read_table(tmp_path, "pieces")
-
-
-def test_without_duckdb_one_line_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "duckdb", None)
-    with pytest.raises(
-        InputError, match=r"needs duckdb, which is not installed. Install it from .*pip install '\.\[parquet\]'"
-    ):
+    message = r"needs duckdb, which is not installed. Install it from .*pip install '\.\[parquet\]'"
+    with pytest.raises(InputError, match=message):
         check_tables()
-
-
-def test_a_folder_whose_name_is_no_sql_is_read(tmp_path):
-    folder = tmp_path / "it's; DROP"
-    folder.mkdir()
-    _write("routes", [], folder)
-    assert read_table(folder, "routes").empty

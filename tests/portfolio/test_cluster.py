@@ -29,18 +29,15 @@ from assess.portfolio.run_portfolio import run_portfolio
 from assess.portfolio.sources import find_sources
 from assess.settings import Settings
 from tests.portfolio.staged import HOLDS, KILLS, KILLS_ONCE, StagedGround, read_results, write_city
+from tests.refusals import check_refusals
 from tests.waiting import PATIENCE, wait_until
 
 pytest.importorskip("distributed")
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")]
 ROOT = Path(__file__).parents[2]
 FORMULAS = Settings(verify="none")
-QUIET = {
-    "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "false",
-    "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "3s",
-    "PYTHONPATH": str(ROOT),
-}
-
+QUIET = {"DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "false", "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "3s",
+         "PYTHONPATH": str(ROOT)}  # fmt: skip
 
 ALONE = ("--nthreads", "1", "--no-nanny")
 """A worker that nobody starts again when it dies."""
@@ -229,11 +226,9 @@ def test_a_server_that_says_nothing_or_nothing_readable_and_nobody_are_told(tmp_
 
 
 def test_an_address_of_another_form_is_refused_at_once():
-    for address in ("banana", "http://127.0.0.1:1", "tcp://host", "tcp://host:0", "host:70000", "", ":1"):
-        with pytest.raises(
-            InputError, match=r"^scheduler is .*, expected tcp://HOST:PORT, such as tcp://10\.0\.0\.5:8786"
-        ):
-            check_cluster(address)
+    message = r"^scheduler is .*, expected tcp://HOST:PORT, such as tcp://10\.0\.0\.5:8786"
+    addresses = ("banana", "http://127.0.0.1:1", "tcp://host", "tcp://host:0", "host:70000", "", ":1")
+    check_refusals(InputError, check_cluster, [(address, message) for address in addresses])
     for address in ("tcp://10.0.0.5:8786", "a-host.local:1", "wss://[::1]:65535", "tls://h_1:2"):
         check_cluster(address)
 

@@ -22,10 +22,7 @@ from assess.settings import Settings
 from tests.portfolio.staged import HOLDS, StagedGround, write_city
 from tests.waiting import wait_until
 
-pytestmark = [
-    pytest.mark.skipif(os.name == "nt", reason="signals of POSIX"),
-    pytest.mark.slow,
-]
+pytestmark = [pytest.mark.skipif(os.name == "nt", reason="signals of POSIX"), pytest.mark.slow]
 SETTINGS = Settings(verify="none", city=True)
 
 

@@ -28,9 +28,8 @@ def asked(view, tmp_path, monkeypatch):
     for name in TABLES:
         table = getattr(view, name)
         connection.register("given", table)
-        connection.execute(
-            f"COPY (SELECT * FROM given) TO '{(folder / f'{name}.parquet').as_posix()}' (FORMAT parquet)"
-        )
+        target = (folder / f"{name}.parquet").as_posix()
+        connection.execute(f"COPY (SELECT * FROM given) TO '{target}' (FORMAT parquet)")
     monkeypatch.chdir(tmp_path)
     return [connection.execute(query).fetch_df() for query in QUERIES]
 

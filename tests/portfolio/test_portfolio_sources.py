@@ -98,13 +98,9 @@ def test_an_index_names_buildings_below_its_folder_alone(tmp_path):
     _put(tmp_path, "secret.xlsx")
     index = tmp_path / "in" / "index.csv"
     lines = [
-        "path,building,use,floor_area_m2",
-        "sub\\b.xlsx,,,",
-        "./a.xlsx,Named,,",
-        "../secret.xlsx,,,",
-        "gone.xlsx,,,",
-    ]
-    lines += [f"{tmp_path}/secret.xlsx,,,", "C:\\x.xlsx,,,", "a.pdf,,,", ",No survey,office,1000"]
+        "path,building,use,floor_area_m2", "sub\\b.xlsx,,,", "./a.xlsx,Named,,", "../secret.xlsx,,,", "gone.xlsx,,,",
+        f"{tmp_path}/secret.xlsx,,,", "C:\\x.xlsx,,,", "a.pdf,,,", ",No survey,office,1000",
+    ]  # fmt: skip
     index.write_text("\n".join(lines), encoding="utf-8")
     found = {one.path: one for one in find_sources(index)}
     assert found["a.xlsx"].index.building == "Named"

@@ -21,7 +21,7 @@ def book(view):
     return openpyxl.load_workbook(io.BytesIO(render_ranking(view)))
 
 
-def test_the_sheets_have_filters_and_frozen_heads_and_no_cell_is_a_formula_or_a_link(book):
+def test_sheets_have_filters_and_frozen_heads_no_cell_is_a_formula_and_pieces_come_by_their_place(book, view):
     names = ["Summary", "Buildings", "Types", "Pieces to fix first", "Routes", "Skipped", "Notes"]
     assert book.sheetnames == names
     for name in names[1:]:
@@ -31,9 +31,6 @@ def test_the_sheets_have_filters_and_frozen_heads_and_no_cell_is_a_formula_or_a_
     assert {cell.data_type for cell in cells} <= {"s", "n"}
     assert all(cell.hyperlink is None for cell in cells)
     assert any(cell.value and str(cell.value).startswith("=cmd|") for cell in cells)
-
-
-def test_pieces_come_by_their_place_on_the_work_lists(view):
     found = list_first_pieces(view)
     places = [row["work_place"] for row in found]
     assert places == sorted(places)

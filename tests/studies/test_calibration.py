@@ -29,7 +29,7 @@ from assess.studies.calibration import (
     list_beams,
     list_recorded,
     try_floors,
-)
+)  # fmt: skip
 from assess.studies.study import PARTS, Options, render_block
 from assess.units import GRAVITY
 
@@ -67,17 +67,14 @@ def test_classes_and_points_of_the_figure_take_every_case_once():
     assert (points[0].chance, points[-1].share) == pytest.approx((0.01, 1))
 
 
-def test_error_knows_that_cases_of_a_group_are_not_independent():
+def test_error_knows_that_cases_of_a_group_are_not_independent_and_weighs_unequal_groups():
     """Each value ten times over is no more than the value once, and the names of the groups do not matter."""
     values = np.array([0.1, -0.3, 0.5, 0.2, 0.0, -0.4])
     one = find_error(values, np.arange(6))
     assert one == pytest.approx(values.std(ddof=1) / math.sqrt(6)), "that of a mean"
     assert find_error(np.repeat(values, 10), np.repeat([9, 2, 5, 70, 1, 3], 10)) == pytest.approx(one)
     assert find_error(np.repeat(values, 10), np.arange(60)) < 0.4 * one
-
-
-def test_error_of_unequal_groups_by_hand():
-    """Three groups: means without each are 1.5/3, 2/3 and 0.5/2 of the sums 1, 0.5, 1 of 1, 1 and 2 values."""
+    # three groups: means without each are 1.5/3, 2/3 and 0.5/2 of the sums 1, 0.5, 1 of 1, 1 and 2 values
     values, groups = np.array([1.0, 0.5, 0.25, 0.75]), np.array([0, 1, 2, 2])
     without = np.array([1.5 / 3, 2 / 3, 1.5 / 2])
     assert find_error(values, groups) == pytest.approx(math.sqrt(2 / 3 * np.sum((without - without.mean()) ** 2)))
@@ -127,17 +124,14 @@ def make_tried(floors, chance, seed):
     return found
 
 
-def test_right_chances_are_found_right():
+def test_right_chances_are_found_right_and_wrong_ones_wrong():
+    """Wrong are chances of 0.2 that come true in half of the cases."""
     found = calibrate(make_tried(list_beams(), lambda rng, shape: np.round(rng.random(shape), 2), 8))
     assert found.whole.cases == 56 * 96
     assert abs(found.whole.difference) < 3 * found.whole.error < 0.03
     assert set(found.classes) == set(RiskClass)
     for one in found.classes.values():
         assert abs(one.difference) < (3 * one.error if one.fallen else 0.03)
-
-
-def test_wrong_chances_are_found_wrong():
-    """Chances of 0.2 that come true in half of the cases."""
     tried = make_tried(list_beams(), lambda _, shape: np.full(shape, 0.5), 9)
     wrong = calibrate([replace(one, fallen=np.full(SHAPE, 20)) for one in tried])
     assert wrong.whole.difference == pytest.approx(-0.3, abs=0.03)
@@ -259,9 +253,8 @@ def test_the_page_says_where_chances_did_not_come_true():
     assert "+1.0 ± - points on recorded floors" in summary
     assert "Of 7,392 cases of class low the floor motions themselves overturned 0." in summary
     assert "| recorded floors | low | 2,016 | 21 | 1.0 % | 0 (0.0 %) | +1.0 | - | - |" in page
-    assert (
-        "Of 2,016 cases of class low, with a mean chance of 1.0 %, the floor motions themselves overturned 0." in page
-    )
+    said = "Of 2,016 cases of class low, with a mean chance of 1.0 %, the floor motions themselves overturned 0."
+    assert said in page
     assert "In no other class is the difference beyond twice its error." in page
     _, page = made_up_page(0.5, lambda at: np.arange(96).reshape(SHAPE) % 4 < 3 - at % 2)
     assert "In class high the difference is beyond twice its error, -12." in page

@@ -46,13 +46,10 @@ def test_one_step_worked_by_hand():
     assert solver.njev == solver.nlu == 1
 
 
-def test_order_two():
+def test_order_two_and_the_path_within_a_step():
     off = [np.abs(step_evenly(h).y[:, -1] - swing_exactly(2.0)).max() for h in (0.1, 0.05, 0.025)]
     assert off[0] / off[1] == pytest.approx(4, rel=0.05)
     assert off[1] / off[2] == pytest.approx(4, rel=0.05)
-
-
-def test_path_within_a_step():
     found = step_evenly(0.05)
     assert found.sol(found.t) == pytest.approx(found.y, abs=1e-14)
     times = np.linspace(0, 2, 201)
@@ -94,13 +91,16 @@ def test_van_der_pol():
     assert stiff.t.size < 2000
 
 
-def test_backwards_and_events():
+def test_backwards_and_events_and_a_solution_that_ends_is_reported():
     back = solve_ivp(swing, (2, 0), swing_exactly(2.0), method=Ode23s, rtol=1e-6, atol=1e-8)
     assert back.y[:, -1] == pytest.approx([1, 0], abs=1e-4)
     fall = solve_ivp(
         lambda _t, y: [y[1], -2.0], (0, 9), [0.0, 3.0], method=Ode23s, events=lambda _t, y: y[0], first_step=0.1
     )
     assert fall.t_events[0][-1] == pytest.approx(3.0, abs=1e-9)  # a parabola is followed exactly
+    found = solve_ivp(lambda _t, y: y**2, (0, 2), [1.0], method=Ode23s)  # 1 / (1 - t)
+    assert not found.success
+    assert found.t[-1] == pytest.approx(1.0, abs=0.01)
 
 
 def test_bad_options():
@@ -108,9 +108,3 @@ def test_bad_options():
                           ({"order": 3}, "no option order")):  # fmt: skip
         with pytest.raises(ValueError, match=says):
             Ode23s(swing, 0.0, np.array([1.0, 0.0]), 1.0, **options)
-
-
-def test_a_solution_that_ends_is_reported():
-    found = solve_ivp(lambda _t, y: y**2, (0, 2), [1.0], method=Ode23s)  # 1 / (1 - t)
-    assert not found.success
-    assert found.t[-1] == pytest.approx(1.0, abs=0.01)
