@@ -28,13 +28,7 @@ def test_lognormal_about_the_median():
     assert outcome.value == pytest.approx([0.158655254, 0.5, 0.841344746])
     assert outcome.detail["median_pfv_cm_s"] == pytest.approx(MEDIAN * 100)
     assert raised(outcome) == set()
-
-
-def test_no_shaking_no_risk():
     assert evaluate(pfv=0.0).value[0] == 0
-
-
-def test_acceleration_does_not_enter():
     assert evaluate(pfv=0.5, pfa=0.0).value[0] == evaluate(pfv=0.5, pfa=20.0).value[0]
 
 
@@ -52,12 +46,12 @@ def test_a_stocky_piece_does_not_rock():
     assert outcome.flags["extrapolated"].tolist() == [True, False, False, False]
 
 
-@pytest.mark.parametrize(
-    ("breadth_to_height", "outside"), [(0.154, True), (0.155, False), (0.4, False), (0.625, False), (0.626, True)]
-)
-def test_outside_the_published_medians(breadth_to_height, outside):
-    outcome = evaluate(breadth=breadth_to_height * 1.7, height=1.7, pfv=0.5)
-    assert outcome.flags["extrapolated"][0] == outside
+def test_outside_the_published_medians():
+    ratios = [0.154, 0.155, 0.4, 0.625, 0.626]
+    outcome = evaluate(breadth=[ratio * 1.7 for ratio in ratios], height=1.7, pfv=0.5)
+    assert outcome.flags["extrapolated"].tolist() == [True, False, False, False, True]
+    assert "inferred" in METHOD.departures[0]
+    assert "nine" in METHOD.departures[0]
 
 
 def test_the_median_grows_with_breadth_and_with_size():
@@ -65,8 +59,3 @@ def test_the_median_grows_with_breadth_and_with_size():
     assert np.all(np.diff(median_pfv(breadth_to_height, np.ones(500))) > 0)
     height = np.linspace(0.2, 3.0, 100)
     assert np.all(np.diff(median_pfv(0.25 * height, height)) > 0)
-
-
-def test_it_says_that_the_closed_form_is_inferred():
-    assert "inferred" in METHOD.departures[0]
-    assert "nine" in METHOD.departures[0]

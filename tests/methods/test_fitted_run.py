@@ -65,9 +65,8 @@ class TestRun:
             assert {model.key, f"{model.key}_raw", f"{model.key}_flags"} <= set(heads)
         page = (out / "report.html").read_text(encoding="utf-8")
         assert "Surface <b>8" not in page
-        escaped = [
-            f"{one} (fitted on 3 buildings)" for one in ("Surface &lt;b&gt;8&lt;/b&gt; &amp; {x}", "Probit with size")
-        ]
+        names = ("Surface &lt;b&gt;8&lt;/b&gt; &amp; {x}", "Probit with size")
+        escaped = [f"{one} (fitted on 3 buildings)" for one in names]
         for title in escaped:
             assert f"<h3>{title}</h3>" in page  # the methods
             assert f'class="num">{title}</th>' in page  # the comparison
@@ -87,12 +86,10 @@ class TestRun:
         assert f"error  {broken}: polynomial.terms[1] is nan, expected a number of at most 1e+30." in done.stderr
         assert not (tmp_path / "out").exists()
 
-    def test_a_folder_is_told(self, book, tmp_path):
+    def test_a_folder_and_too_many_are_told(self, book, tmp_path):
         done = run_cli(book, "--out", str(tmp_path / "out"), "--method", str(tmp_path))
         assert (done.exit_code, f"error  {tmp_path}: {NO_FILE}" in done.stderr) == (2, True)
         assert not (tmp_path / "out").exists()
-
-    def test_too_many_are_told(self, book, tmp_path):
         path = str(saved(tmp_path))
         done = run_cli(book, "--out", str(tmp_path / "out"), *["--method", path] * 5)
         assert (done.exit_code, "5 files; a report has room for 4" in done.stderr) == (2, True)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from assess.arrays import FloatArray
 from assess.errors import CancelledError
-from assess.methods import Cases, Motions, Outcome
+from assess.methods import Cases, Motions
 from assess.methods.housner_monte_carlo import BATCH, METHOD, evaluate
 from assess.methods.simulate import LOOKS, LOOKS_Z, interval_width
 from assess.motion.target_fit import Fit, Spectra
@@ -26,6 +26,9 @@ AUTO = Settings(runs="auto")
 LEVELS = {"thin": 3.0, "usual": 6.0, "stout": 12.0}
 """Amplitudes [m/s2] of a long push under which only pieces up to that stoutness overturn."""
 SIZES = {"thin": (0.3, 1.8), "usual": (0.8, 1.8), "stout": (1.5, 1.8)}
+
+PUSH = np.concatenate([[0.0], np.ones(150), np.zeros(2)])
+"""A long push of 1 m/s2, and rest."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,11 +51,7 @@ class Pushes:
     def realise(self, first: int, count: int) -> list[tuple[FloatArray, float]]:
         self.asked.append((first, count))
         own = [self.levels[number % len(self.levels)] for number in range(first, first + count)]
-        return [(np.array(own)[:, np.newaxis] * _push(), STEP)]
-
-
-def _push() -> FloatArray:
-    return np.concatenate([[0.0], np.ones(150), np.zeros(2)])
+        return [(np.array(own)[:, np.newaxis] * PUSH, STEP)]
 
 
 CERTAIN = Uncertainty(motion=0.0, piece=False)
@@ -78,23 +77,8 @@ def _grid(ensembles: int, seed: int = 3, count: int = 24) -> Cases:
     height = random.uniform(0.8, 2.2, count)
     breadth = height * random.uniform(0.1, 0.4, count)
     breadth[-4:], height[-4:] = breadth[:4], height[:4]
-    return _cases(
-        np.arange(count) % ensembles,
-        *(MadeUp(one, has_record=one % 2 == 0) for one in range(ensembles)),
-        breadth=breadth,
-        height=height,
-    )
-
-
-def _assert_equal(one: Outcome, other: Outcome) -> None:
-    np.testing.assert_array_equal(one.value, other.value)
-    for name in ("detail", "flags"):
-        for key, values in getattr(one, name).items():
-            np.testing.assert_array_equal(values, getattr(other, name)[key], err_msg=key)
-    for mine, its in zip(one.joints, other.joints, strict=True):
-        assert mine.ensemble == its.ensemble
-        for key in ("cases", "runs", "fell", "ideal", "rotation"):
-            np.testing.assert_array_equal(getattr(mine, key), getattr(its, key), err_msg=key)
+    made = (MadeUp(one, has_record=one % 2 == 0) for one in range(ensembles))
+    return _cases(np.arange(count) % ensembles, *made, breadth=breadth, height=height)
 
 
 # --- counting ---
@@ -121,14 +105,15 @@ def test_pushes_overturn_pieces_up_to_their_stoutness() -> None:
     assert evaluate(cases, Settings(runs=4)).value.tolist() == [0.75, 0.5, 0.25]
 
 
-def test_restitution_is_used() -> None:
+def test_restitution_is_used_and_equal_pieces_do_the_same() -> None:
     cases = _grid(1)
     lively = dataclasses.replace(cases, restitution=np.full(cases.breadth.size, 0.99))
     one, other = (evaluate(which, Settings(runs=60)) for which in (cases, lively))
     assert (one.joints[0].rotation != other.joints[0].rotation).any()
+    np.testing.assert_array_equal(one.joints[0].rotation[-4:], one.joints[0].rotation[:4])
 
 
-def test_the_record_itself_is_integrated_too() -> None:
+def test_the_record_itself_is_integrated_too_and_without_one_nothing_is_known_of_it() -> None:
     ensemble = MadeUp(0, has_record=True)
     assert ensemble.record is not None
     breadth = np.linspace(0.1, 0.5, 9)
@@ -138,18 +123,15 @@ def test_the_record_itself_is_integrated_too() -> None:
     np.testing.assert_array_equal(outcome.detail["record_overturned"], found.overturned[:, 0])
     np.testing.assert_array_equal(outcome.detail["record_rotation"], found.rotation[:, 0])
     np.testing.assert_array_equal(outcome.flags["fell_in_record"], found.overturned[:, 0])
+    without = evaluate(_cases(0, MadeUp(0)), Settings(runs=3))
+    assert np.isnan([without.detail["record_overturned"][0], without.detail["record_rotation"][0]]).all()
+    assert not without.flags["fell_in_record"].any()
 
 
 def test_a_piece_may_fall_in_the_record_alone() -> None:
-    outcome = evaluate(_cases(0, Pushes((0.0,), record=(12 * _push(), STEP))), Settings(runs=30))
+    outcome = evaluate(_cases(0, Pushes((0.0,), record=(12 * PUSH, STEP))), Settings(runs=30))
     assert (outcome.value[0], outcome.detail["record_overturned"][0]) == (0.0, 1.0)
     assert outcome.flags["fell_in_record"][0]
-
-
-def test_without_a_record_nothing_is_known_of_it() -> None:
-    outcome = evaluate(_cases(0, MadeUp(0)), Settings(runs=3))
-    assert np.isnan([outcome.detail["record_overturned"][0], outcome.detail["record_rotation"][0]]).all()
-    assert not outcome.flags["fell_in_record"].any()
 
 
 def test_flags_and_pieces_without_motions_or_too_stocky() -> None:
@@ -243,7 +225,7 @@ def test_batches_go_on_with_the_draws() -> None:
     np.testing.assert_array_equal(late, draw_earthquakes(1, 0, BATCH + 40)[BATCH:])
     breadth, height, centre, restitution = (np.array([one]) for one in (0.3, 1.8, 0.5, np.nan))
     drawn = draw_bodies(breadth, height, centre, restitution, [5], seed=1, first=BATCH, count=40)
-    motions = np.repeat(3.0 * _push()[None], 40, axis=0)
+    motions = np.repeat(3.0 * PUSH[None], 40, axis=0)
     found = rock_blocks(
         drawn.breadth, drawn.height, motions, STEP, restitution=drawn.restitution, centre=drawn.centre,
         scale=np.exp(MOTION * late)[None],
@@ -279,12 +261,7 @@ def test_joints_hold_what_each_piece_did_under_each_motion() -> None:
             assert step == STEP
 
 
-def test_of_fewer_than_three_motions_all_are_shown() -> None:
-    (joint,) = evaluate(_cases(0, MadeUp(0)), Settings(runs=2)).joints
-    assert len(joint.examples) == 2
-
-
-def test_the_spectra_kept_are_those_of_motions_that_were_run() -> None:
+def test_the_spectra_kept_are_those_of_motions_that_were_run_and_of_fewer_than_three_all_are_shown() -> None:
     periods = np.array([0.5, 1.0])
     known = Spectra(periods=periods, ordinates=np.ones((100, 2), dtype=np.float32), target=periods)
     for runs, kept in ((2, 2), (100, 100), (120, 100)):
@@ -293,6 +270,7 @@ def test_the_spectra_kept_are_those_of_motions_that_were_run() -> None:
         assert (len(joint.spectra.ordinates), joint.spectra.target is periods) == (kept, True)
     (joint,) = evaluate(_cases(0, MadeUp(0)), Settings(runs=2)).joints
     assert joint.spectra is None
+    assert len(joint.examples) == 2
 
 
 def test_many_motions_are_made_in_batches() -> None:
@@ -371,11 +349,6 @@ def test_under_auto_pieces_leave_as_they_are_decided() -> None:
     assert joint.fell.sum(axis=1).tolist() == outcome.detail["overturned"].tolist() == [125, 150, 0]
 
 
-def test_the_width_of_intervals() -> None:
-    assert interval_width(AUTO) == 2.64
-    assert interval_width(Settings(runs=100)) == pytest.approx(1.96, abs=1e-4)
-
-
 # --- threads, errors, progress ---
 
 
@@ -385,7 +358,15 @@ def test_the_width_of_intervals() -> None:
 def test_threads_change_nothing(ensembles: int, settings: Settings) -> None:
     expected = evaluate(_grid(ensembles), settings)
     for threads in (2, 3, 4):
-        _assert_equal(evaluate(_grid(ensembles), settings, threads=threads), expected)
+        found = evaluate(_grid(ensembles), settings, threads=threads)
+        np.testing.assert_array_equal(found.value, expected.value)
+        for name in ("detail", "flags"):
+            for key, values in getattr(found, name).items():
+                np.testing.assert_array_equal(values, getattr(expected, name)[key], err_msg=key)
+        for mine, its in zip(found.joints, expected.joints, strict=True):
+            assert mine.ensemble == its.ensemble
+            for key in ("cases", "runs", "fell", "ideal", "rotation"):
+                np.testing.assert_array_equal(getattr(mine, key), getattr(its, key), err_msg=key)
 
 
 def test_threads_are_shared_out_among_ensembles() -> None:
@@ -393,12 +374,6 @@ def test_threads_are_shared_out_among_ensembles() -> None:
         cases = _grid(ensembles)
         evaluate(cases, Settings(runs=2), threads=threads)
         assert [one.opened for one in cases.ensembles] == [[each]] * ensembles  # type: ignore[attr-defined]
-
-
-def test_equal_pieces_do_the_same() -> None:
-    cases = _grid(1)
-    (joint,) = evaluate(cases, Settings(runs=30)).joints
-    np.testing.assert_array_equal(joint.rotation[-4:], joint.rotation[:4])
 
 
 @pytest.mark.parametrize("threads", [1, 3])
@@ -440,7 +415,9 @@ def test_it_stops_between_batches(threads: int) -> None:
         evaluate(_cases([0, 1], *ensembles), Settings(runs=10 * BATCH), threads=threads, stage=stage)
 
 
-def test_its_description_tells_what_it_does() -> None:
+def test_its_description_tells_what_it_does_and_the_width_of_intervals() -> None:
+    assert interval_width(AUTO) == 2.64
+    assert interval_width(Settings(runs=100)) == pytest.approx(1.96, abs=1e-4)
     text = " ".join((*METHOD.assumptions, *METHOD.departures))
     for look in LOOKS:
         assert f"{look:,}" in text

@@ -14,17 +14,11 @@ def evaluate(breadth_cm: ArrayLike, height_cm: ArrayLike, **given: ArrayLike) ->
     return METHOD.evaluate(cases, Settings())
 
 
-def test_limit():
+def test_the_limit_itself_must_be_fixed_whatever_the_binary_dust():
     assert LIMIT == 4
     assert evaluate([39.9, 40.0, 40.1], 100).value.tolist() == [1, 1, 0]
-
-
-def test_the_limit_itself_must_be_fixed_whatever_the_binary_dust():
     root = np.arange(5, 25)  # 4·14 = 56 cm at 196 cm, as 0.56 m: 56.00000000000001
     assert evaluate(4.0 * root, root**2).value.tolist() == [1] * len(root)
-
-
-def test_detail():
     assert evaluate(32.1, 73.7).detail["breadth_over_root_height"][0] == pytest.approx(3.74, abs=0.005)
 
 

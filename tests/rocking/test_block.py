@@ -14,14 +14,10 @@ def of_radius_and_angle(radius: float, angle: float) -> tuple[FloatArray, FloatA
     return np.array([2 * radius * math.sin(angle)]), np.array([2 * radius * math.cos(angle)])
 
 
-def test_angle_and_radius():
+def test_angle_radius_and_frequency_parameter_of_equation_4():
     breadth, height = np.array([0.6]), np.array([0.8])
     assert block.critical_angle(breadth, height)[0] == pytest.approx(math.atan(0.75))
     assert block.radius(breadth, height)[0] == pytest.approx(0.5)
-
-
-def test_frequency_parameter_is_equation_4():
-    breadth, height = np.array([0.6]), np.array([0.8])
     assert block.frequency_parameter(breadth, height)[0] == pytest.approx(math.sqrt(3 * GRAVITY / (4 * 0.5)))
 
 
@@ -36,12 +32,9 @@ def test_the_block_of_figure_2_is_no_block_of_90_centimetres():
     assert block.frequency_parameter(short * math.tan(0.25), short)[0] == pytest.approx(3.98, abs=0.005)
 
 
-def test_restitution():
+def test_restitution_vanishes_where_a_block_no_longer_rocks():
     breadth, height = of_radius_and_angle(1.0, 0.25)
     assert block.restitution(breadth, height)[0] == pytest.approx(0.908, abs=0.0005)
-
-
-def test_restitution_vanishes_where_a_block_no_longer_rocks():
     ratios = np.array([0.01, 0.5, block.STOCKY, math.sqrt(2), 1.5])
     restitution = block.restitution(ratios, np.ones(5))
     assert np.all(np.diff(restitution) < 0)

@@ -13,6 +13,7 @@ from assess.methods import Cases
 from assess.methods.fitted import Probit, find_groups
 from assess.studies.fit import Counts, design, fit_alternative, fit_probit, loss
 from assess.units import GRAVITY
+from tests.refusals import check_refusals
 
 RUNS = 100
 
@@ -31,14 +32,11 @@ KNOWN = Probit(-1.2, 1.8, 0.9)
 GIVEN = counts(KNOWN)
 
 
-def test_groups_worked_by_hand():
+def test_groups_worked_by_hand_have_no_dimension():
     # B 0.3, H 0.4 m: r = 0.25 m, p = sqrt(3 g) rad/s; g B/H = 0.75 g
     A, V = find_groups(breadth=np.array([0.3]), height=np.array([0.4]), pfa=np.array([GRAVITY]), pfv=np.array([1.0]))
     assert A[0] == pytest.approx(4 / 3)
     assert V[0] == pytest.approx(math.sqrt(3 * GRAVITY) / (0.75 * GRAVITY))
-
-
-def test_groups_have_no_dimension():
     # lengths and times scaled so that g stays: sizes by s, velocities by root s, accelerations by 1
     s = 3.7
     one = {name: np.array([value]) for name, value in (("breadth", 0.3), ("height", 1.8), ("pfa", 3.0), ("pfv", 0.4))}
@@ -86,10 +84,12 @@ def test_gradient_is_that_of_finite_differences(b):
         assert gradient[at] == pytest.approx((ends[0] - ends[1]) / 2e-6, rel=1e-5, abs=0.05)
 
 
-def test_a_slope_is_never_negative():
+def test_a_slope_is_never_negative_and_nothing_falls_where_nothing_moves():
     found = fit_probit(counts(Probit(-1.0, -0.8, 2.0)))
     assert found.b1 == 0
     assert found.b2 > 0
+    cases = Cases.of(breadth=0.3, height=1.8, pfa=[0.0, 3.0, 3.0], pfv=[0.4, 0.0, np.nan])
+    np.testing.assert_array_equal(Probit(5.0, 0.0, 0.0).evaluate(cases), [0.0, 0.0, np.nan])
 
 
 @settings(deadline=None, max_examples=100)
@@ -111,11 +111,6 @@ def test_bounded_and_monotone(probit, height, ratio, pfa, pfv, factor, larger):
     assert chance(size=larger) <= start + 1e-12
 
 
-def test_nothing_falls_where_nothing_moves_and_an_unknown_velocity_stays_unknown():
-    cases = Cases.of(breadth=0.3, height=1.8, pfa=[0.0, 3.0, 3.0], pfv=[0.4, 0.0, np.nan])
-    np.testing.assert_array_equal(Probit(5.0, 0.0, 0.0).evaluate(cases), [0.0, 0.0, np.nan])
-
-
 def test_left_out_errors_are_small_for_its_own_kind_and_large_for_another_building():
     group = np.repeat([0, 1, 2], GIVEN.fallen.size // 3)
     alike = fit_alternative(GIVEN, group).left_out
@@ -133,7 +128,7 @@ def test_a_fit_without_a_group_is_that_to_the_others():
 
 
 def test_counts_that_cannot_be_fitted_are_reported():
-    for change, match in (
+    check_refusals(InputError, lambda change: fit_probit(dataclasses.replace(GIVEN, **change)), [
         ({"fallen": np.zeros(600, dtype=int)}, "all fell, or none"),
         ({"fallen": GIVEN.runs}, "all fell, or none"),
         ({"fallen": GIVEN.runs + 1}, "more have fallen than ran"),
@@ -142,9 +137,7 @@ def test_counts_that_cannot_be_fitted_are_reported():
         ({"pfv": np.ones(3)}, "different lengths"),
         ({name: np.ones(600) for name in ("breadth", "height", "pfa", "pfv")}, "do not vary"),
         ({"fallen": np.where(design(GIVEN)[:, 1] > 0.2, GIVEN.runs, 0)}, "separates all that fell"),
-    ):
-        with pytest.raises(InputError, match=match):
-            fit_probit(dataclasses.replace(GIVEN, **change))
+    ])  # fmt: skip
 
 
 def test_chances_that_depend_on_nothing_leave_both_slopes_at_zero():

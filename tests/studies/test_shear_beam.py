@@ -69,14 +69,11 @@ def test_resonance_is_that_of_one_mode():
     assert steady == pytest.approx(4 / np.pi / (2 * DAMPING), rel=0.05)
 
 
-def test_shares_of_all_modes_are_one():
+def test_shares_of_all_modes_are_one_and_modes_are_counted_up_to_the_highest_frequency():
     assert find_shares(100_000, 1.0).sum() == pytest.approx(1, abs=1e-5)
     assert find_shares(100_000, 0.5).sum() == pytest.approx(1, abs=1e-5)
     assert find_shares(3, 0.0) == pytest.approx(0)
-
-
-def test_modes_are_counted_up_to_the_highest_frequency():
-    """Mode n has the frequency (2n - 1)/T1, up to 25 Hz."""
+    # mode n has the frequency (2n - 1)/T1, up to 25 Hz
     assert [count_modes(period) for period in (0.01, 0.5, 1.0, 4.0)] == [1, 6, 13, 50]
 
 

@@ -17,12 +17,9 @@ def test_paragraphs_and_items_are_joined_and_rows_are_not():
     assert study._join_lines(" \n\n") == []
 
 
-def test_a_value_that_is_missing_is_an_error():
+def test_every_study_has_a_template_with_its_summary_and_a_value_that_is_missing_is_an_error():
     with pytest.raises(UndefinedError, match="'missing' is undefined"):
         study.render_block("solver", "missing", side=0.16)
-
-
-def test_every_study_has_a_template_with_its_summary():
     for one in all_studies():
         text = (templates() / "studies" / f"{one.name}.md.j2").read_text(encoding="utf-8")
         assert "{% block page %}" in text

@@ -141,11 +141,7 @@ class TestLeftOut:
     def test_worked_by_hand(self):
         # the mean of the others: 2.5 for the first group (errors 1.5, 0.5), 1.5 for the second (0.5, 1.5)
         z, group = np.array([1.0, 2, 2, 3]), np.array(["a", "a", "b", "b"])
-
-        def refit(mask):
-            return lambda chosen: np.full(int(chosen.sum()), z[mask].mean())
-
-        found = leave_out(z, group, refit)
+        found = leave_out(z, group, lambda mask: lambda chosen: np.full(int(chosen.sum()), z[mask].mean()))
         assert found.squares == pytest.approx((1.25, 1.25))
         assert found.error == pytest.approx(1.25**0.5)
         assert found.spread == 0

@@ -28,7 +28,7 @@ from assess.studies.table1 import (
     quote,
     read_folder,
     read_stations,
-)
+)  # fmt: skip
 from assess.units import GRAVITY
 
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -57,7 +57,7 @@ def test_the_50_buildings_one_without_pga():
     assert san_jose.pga["longitudinal"] == pytest.approx(0.2 * GRAVITY)
 
 
-def test_a_stiff_building_by_hand():
+def test_a_stiff_and_a_tall_building_by_hand():
     # 003: h = 15.09 m, T1 = 1.4 x 0.0488 h^0.75 = 0.523 s: ln(0.523/0.4)/ln(0.63/0.4) = 0.590 of the way from 0.4 to
     # 0.63 s in the table. PGV 0.2 x 105 = 21 cm/s. z/h = 1/3 is 2/9 of the way from 0.3 to 0.45, 2/3 is 4/9 from 0.6.
     found = [one for one in climb(STATIONS["003"], STATIONS["003"].period) if one.direction == "longitudinal"]
@@ -66,9 +66,6 @@ def test_a_stiff_building_by_hand():
     assert [one.pfa / GRAVITY for one in found] == pytest.approx([0.2, 0.2925, 0.4086, 0.6426], abs=1e-4)
     assert [100 * one.pfv for one in found] == pytest.approx([21, 26.19, 38.51, 50.48], abs=0.01)
     assert [one.is_roof for one in found] == [False, False, False, True]
-
-
-def test_a_tall_building_by_hand():
     # 001: h = 51.2 m, T1 = 1.308 s: 0.571 of the way from 1 to 1.6 s; PFA 2.680 and 2.377, PFV 2.724 and 2.762 there.
     roof = [one for one in climb(STATIONS["001"], STATIONS["001"].period) if one.direction == "longitudinal"][-1]
     assert STATIONS["001"].period == pytest.approx(1.308, abs=5e-4)
@@ -137,12 +134,12 @@ def test_the_files(tmp_path):
     assert len((tmp_path / "table1.svg").read_bytes()) < 120_000
 
 
-@pytest.mark.parametrize(
-    ("breadth", "shown"),
-    [(1.0, "(B/H 1.00, outside the range in which OR is checked, 0.14 to 0.39)"), (0.39, "(B/H 0.39) on")],
-)
-def test_a_piece_outside_the_checked_range_is_reported(breadth, shown):
-    assert shown in STUDY.run(options(breadth=breadth, height=1.0)).page[0]
+def test_a_piece_outside_the_checked_range_is_reported_and_names_are_quoted():
+    outside = "(B/H 1.00, outside the range in which OR is checked, 0.14 to 0.39)"
+    for breadth, shown in ((1.0, outside), (0.39, "(B/H 0.39) on")):
+        assert shown in STUDY.run(options(breadth=breadth, height=1.0)).page[0]
+    for name, shown in (("a", "`a`"), ("a`b", "``a`b``"), ("`a``b", "``` `a``b ```"), ("a\nb", "`a b`")):
+        assert quote(name) == shown
 
 
 # ---------------------------------------------------------------- a folder of records
@@ -232,8 +229,3 @@ def test_names_stand_on_the_page_as_they_are(tmp_path):
     assert "Left out, with the full reasons in `table1-records-left-out.csv`: ``\\udcff|`d.txt`` (" in page
     with (tmp_path / "out" / "table1-records.csv").open(encoding="utf-8", newline="") as file:
         assert [row["record"] for row in csv.DictReader(file)] == ["a`b|c.smc"]
-
-
-def test_names_are_quoted():
-    for name, shown in (("a", "`a`"), ("a`b", "``a`b``"), ("`a``b", "``` `a``b ```"), ("a\nb", "`a b`")):
-        assert quote(name) == shown

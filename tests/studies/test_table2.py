@@ -78,13 +78,17 @@ def test_criteria_are_counted_where_pieces_fall_and_where_they_do_not(judged, co
         assert found.idle == np.sum((fallen == 0) & (met == 1)) / np.sum(fallen == 0)
 
 
-def test_what_cannot_rock_is_found(compared):
+def test_what_cannot_rock_is_found_and_pairs_are_those_of_one_floor(compared):
     """B/H of 0.1, 0.125, ... 0.5 and PFA of 0.1, 0.15, ... 0.9 g: how many are below g B/H is counted by hand."""
     ratios = [100 + 25 * at for at in range(17)]
     still = sum(50 * level < ratio for ratio in ratios for level in range(2, 19))
     assert compared.at_rest.share == pytest.approx(still / 17**2)
     assert 0 < compared.at_rest.above["kaneko_hayashi"] < compared.at_rest.above["proposed_or"] < 1
     assert compared.at_rest.above_by_integration == 0  # what falls is thin, and PFA is 0.5 g there
+    along, across = ([one for one in compared.pairs if one.is_along == is_along] for is_along in (True, False))
+    market, berkeley = 1 + 1 + 1, 1 + 1 + 1 + 3 + 1  # g h, d e, a b; basement X and Y, 4th, roof X and Y
+    assert len(along) == (market + berkeley) * len(TOGETHER)
+    assert len(across) == (2 + 2 + 4 + 6) * len(TOGETHER)
 
 
 def test_the_yardstick_says_that_nothing_falls(judged, compared):
@@ -100,13 +104,6 @@ def test_the_yardstick_says_that_nothing_falls(judged, compared):
         assert halved.any()
         assert compared.uncertain[name, "proposed_or"] == find_agreement(said, fallen // 2, 100)
         assert compared.uncertain[name, NOTHING].bias == pytest.approx(-np.mean(fallen // 2) / 100)
-
-
-def test_pairs_are_those_of_one_floor(compared):
-    along, across = ([one for one in compared.pairs if one.is_along == is_along] for is_along in (True, False))
-    market, berkeley = 1 + 1 + 1, 1 + 1 + 1 + 3 + 1  # g h, d e, a b; basement X and Y, 4th, roof X and Y
-    assert len(along) == (market + berkeley) * len(TOGETHER)
-    assert len(across) == (2 + 2 + 4 + 6) * len(TOGETHER)
 
 
 def test_channels_of_a_floor_are_scaled_by_one_factor(judged):
@@ -131,21 +128,16 @@ def test_channels_of_a_pair_are_as_far_apart_as_their_chances():
         assert one.apart[INTEGRATION] == pytest.approx(abs(first - second) / 10)
 
 
-def split_tables(lines):
-    """The cells of each row of each table, its heading first."""
-    tables: list[list[list[str]]] = []
-    for before, line in zip(["", *lines], lines, strict=False):
-        if line.startswith("| "):
-            tables += [] if before.startswith("|") else [[]]
-            tables[-1].append(line.split(" | "))
-    return tables
-
-
 def test_the_page_states_bias_rank_and_classes_for_every_building_and_formula(judged, compared):
     values = collect(judged, compared, OPTIONS)
     head, *others = (render_block("table2", block, **values) for block in ("overview", "page", "failures"))
     each = 1 + len(NAMES) * (len(FORMULAS) + 1)
-    exact, uncertain = split_tables(head)
+    tables: list[list[list[str]]] = []  # the cells of each row of each table, its heading first
+    for before, line in zip(["", *head], head, strict=False):
+        if line.startswith("| "):
+            tables += [] if before.startswith("|") else [[]]
+            tables[-1].append(line.split(" | "))
+    exact, uncertain = tables
     assert (len(exact), len(uncertain)) == (each, each)
     keys = {shown: key for key, shown in FORMULAS.items()}
     for cells in exact[1:]:

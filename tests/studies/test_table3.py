@@ -27,7 +27,7 @@ from assess.studies.table3 import (
     find_median,
     judge_methods,
     read_blocks,
-)
+)  # fmt: skip
 from assess.units import GRAVITY, VELOCITY
 
 OPTIONS = Options(out=Path("unused"))
@@ -39,11 +39,14 @@ def judged():
     return judge_methods(BLOCKS, OPTIONS)
 
 
-def test_the_nine_blocks():
+def test_the_nine_blocks_and_the_boundary_frequency_by_hand():
     assert [one.name for one in BLOCKS] == ["AL1", "AL2", "W1", "W2", "W3", "G", "IB0", "IB2", "IB4"]
     assert BLOCKS[6].pga == {"min": 0.33, "mean": 0.49, "max": 0.9}
     assert BLOCKS[6].printed == {"min": 0.57, "mean": 0.78, "max": 0.87}
     assert BLOCKS[0].ratio == 0.32
+    low, high = find_boundaries(BLOCKS, OPTIONS)
+    assert low == pytest.approx(15.6 / math.sqrt(120) * 1.39**-1.5)
+    assert high == pytest.approx(15.6 / math.sqrt(30) * 1.14**-1.5)
 
 
 def test_the_printed_values_are_ours():
@@ -62,12 +65,17 @@ def test_the_printed_values_are_ours():
     assert other == {GRAVITY: [("AL1", "mean")], 9.81: []}
 
 
-def test_medians_by_hand():
+def test_medians_bias_and_scatter_by_hand_and_a_chance_that_stays_low_has_no_median():
     found = judged()
     # AL1: g B/H = 0.32 g; exp(lambda_A) = 0.32 (1 + 0.32) = 0.4224 g, whether PFV is unknown or not.
     assert found[START].medians[0] == pytest.approx(0.32, abs=1e-9)
     assert found[BRANCH].medians[0] == pytest.approx(0.4224, abs=1e-9)
     np.testing.assert_allclose(found[BOUND].medians, found[BRANCH].medians, rtol=1e-9)
+    off = [math.log(one.ratio * (1 + one.ratio) / one.pga["mean"]) for one in BLOCKS]
+    assert found[BRANCH].bias == pytest.approx(sum(off) / 9)
+    assert found[BRANCH].scatter == pytest.approx(math.sqrt(sum((one - sum(off) / 9) ** 2 for one in off) / 9))
+    assert math.isnan(find_median(lambda ratio, pfa: np.zeros_like(pfa), 0.3))
+    assert find_median(lambda ratio, pfa: np.ones_like(pfa), 0.3) == 0
 
 
 def test_or_reaches_one_half_where_equation_9_does():
@@ -91,11 +99,6 @@ def test_a_median_is_where_the_chance_is_one_half(ratio):
         assert below < 0.5 <= above
 
 
-def test_a_chance_that_stays_low_has_no_median():
-    assert math.isnan(find_median(lambda ratio, pfa: np.zeros_like(pfa), 0.3))
-    assert find_median(lambda ratio, pfa: np.ones_like(pfa), 0.3) == 0
-
-
 def test_medians_of_the_methods():
     found = judged()
     off = {name: abs(one.bias) for name, one in found.items()}
@@ -103,18 +106,6 @@ def test_medians_of_the_methods():
     assert math.exp(found[USED].bias) == pytest.approx(0.64, abs=0.005)
     assert math.exp(found[BRANCH].bias) == pytest.approx(0.92, abs=0.005)
     assert np.all(found[USED].medians < found[START].medians)
-
-
-def test_bias_and_scatter_by_hand():
-    off = [math.log(one.ratio * (1 + one.ratio) / one.pga["mean"]) for one in BLOCKS]
-    assert judged()[BRANCH].bias == pytest.approx(sum(off) / 9)
-    assert judged()[BRANCH].scatter == pytest.approx(math.sqrt(sum((one - sum(off) / 9) ** 2 for one in off) / 9))
-
-
-def test_the_boundary_frequency_by_hand():
-    low, high = find_boundaries(BLOCKS, OPTIONS)
-    assert low == pytest.approx(15.6 / math.sqrt(120) * 1.39**-1.5)
-    assert high == pytest.approx(15.6 / math.sqrt(30) * 1.14**-1.5)
 
 
 @given(st.sampled_from(BLOCKS), st.floats(0.05, 1.0), st.floats(-2, 2), st.floats(0.3, 1.2))
@@ -146,12 +137,10 @@ def test_the_files(tmp_path):
                 "housner_monte_carlo": "direct integration"}  # fmt: skip
     assert {one.key for one in all_methods()} == {"proposed_or", "kaneko_hayashi", "static", *left_out}
     assert all(name in shown.partition("Not evaluated")[2] for name in left_out.values())
-    rows, printed = (read_table(tmp_path / f"{name}.csv") for name in ("table3", "table3-printed"))
+    rows, printed = (
+        list(csv.DictReader((tmp_path / f"{name}.csv").read_text(encoding="utf-8").splitlines()))
+        for name in ("table3", "table3-printed")
+    )
     assert (len(rows), len(printed)) == (9 * 5, 27)
     assert all(abs(float(row["or_printed"]) - float(row["or_equation_9"])) <= 0.0051 for row in printed)
     assert (tmp_path / "table3.svg").is_file()
-
-
-def read_table(path):
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
