@@ -84,8 +84,8 @@ def test_an_index_that_contradicts_its_workbook_is_told_in_one_warning_and_one_t
     )
     assert warning.fix == "Check that the line of the index belongs to this workbook."
     assert warning.sheet == "Building"
-    for row in ({}, SAME, {"floor_area_m2": 500.0, "ground_pga_g": 0.4}):
-        assert _warn(tmp_path, **row) == []
+    for other in ({}, SAME, {"floor_area_m2": 500.0, "ground_pga_g": 0.4}):
+        assert _warn(tmp_path, **other) == []
     assert _is_near(179.999, -179.999), "on two sides of the date line"
     assert not _is_near(179.9, -179.9)
 

@@ -34,8 +34,8 @@ def test_sheets_have_filters_and_frozen_heads_no_cell_is_a_formula_and_pieces_co
     found = list_first_pieces(view)
     places = [row["work_place"] for row in found]
     assert places == sorted(places)
-    names = dict(zip(view.buildings["path"], view.buildings["building"], strict=True))
-    assert all(row["building"] == names[row["path"]] for row in found)
+    buildings = dict(zip(view.buildings["path"], view.buildings["building"], strict=True))
+    assert all(row["building"] == buildings[row["path"]] for row in found)
     assert set(places[:20]) == {1}
 
 

@@ -26,10 +26,11 @@ from assess.rocking.draws import (
     draw_bodies,
     draw_earthquakes,
     name_number,
-)
+)  # fmt: skip
 
 COUNT = 20_000
 RACK = [np.array([one]) for one in (0.40, 1.90, 0.5, math.nan)]
+CUT_NORMAL = truncnorm(-CUT, CUT)
 
 
 def draw(count=COUNT, first=0, seed=1, name=7, **changes):
@@ -45,14 +46,10 @@ def arrays(bodies):
 # --- distributions ---
 
 
-def cut_normal():
-    return truncnorm(-CUT, CUT)
-
-
 def test_earthquakes_are_normal_numbers_cut_at_three():
     found = draw_earthquakes(1, 0, COUNT)
     assert np.abs(found).max() <= CUT
-    assert kstest(found, cut_normal().cdf).pvalue > 0.01
+    assert kstest(found, CUT_NORMAL.cdf).pvalue > 0.01
 
 
 def test_sizes_scatter_about_what_is_given():
@@ -63,7 +60,7 @@ def test_sizes_scatter_about_what_is_given():
         (drawn.centre[0], 0.5, CENTRE),
     ):
         assert np.abs(found - mean).max() <= CUT * deviation * (1 + 1e-12)
-        assert kstest((found - mean) / deviation, cut_normal().cdf).pvalue > 0.01
+        assert kstest((found - mean) / deviation, CUT_NORMAL.cdf).pvalue > 0.01
 
 
 def test_sizes_by_a_scan_scatter_more_and_the_rest_alike():
@@ -73,7 +70,7 @@ def test_sizes_by_a_scan_scatter_more_and_the_rest_alike():
         (drawn.height[0] / 1.90, 1.0, SCANNED_HEIGHT),
     ):
         assert np.abs(found - mean).max() <= CUT * deviation * (1 + 1e-12)
-        assert kstest((found - mean) / deviation, cut_normal().cdf).pvalue > 0.01
+        assert kstest((found - mean) / deviation, CUT_NORMAL.cdf).pvalue > 0.01
     np.testing.assert_array_equal(drawn.centre, usual.centre)
 
 
@@ -101,21 +98,21 @@ def test_restitution_scatters_about_that_of_the_drawn_body():
     """A stout one, whose restitution stays far from 0 and 1; that of a slender one is cut at 1."""
     drawn = draw(breadth=np.array([0.90]))
     own = block.restitution(drawn.breadth[0], drawn.height[0], drawn.centre[0])
-    assert kstest((drawn.restitution[0] - own) / RESTITUTION, cut_normal().cdf).pvalue > 0.01
+    assert kstest((drawn.restitution[0] - own) / RESTITUTION, CUT_NORMAL.cdf).pvalue > 0.01
     assert 0.99 < draw().restitution.max() < 1
 
 
-def test_a_given_restitution_is_the_mean():
+def test_a_given_restitution_is_the_mean_and_stays_between_0_and_1():
     drawn = draw(restitution=np.array([0.8]))
     assert drawn.restitution.mean() == pytest.approx(0.8, abs=0.002)
     assert drawn.restitution.std() == pytest.approx(RESTITUTION, rel=0.03)
-
-
-@pytest.mark.parametrize("given", [0.0, 1.0])
-def test_a_restitution_stays_between_0_and_1(given):
-    drawn = draw(restitution=np.array([given]))
-    assert 0 < drawn.restitution.min() <= drawn.restitution.max() < 1
-    assert np.abs(drawn.restitution - given).max() <= CUT * RESTITUTION
+    for given in (0.0, 1.0):
+        drawn = draw(restitution=np.array([given]))
+        assert 0 < drawn.restitution.min() <= drawn.restitution.max() < 1
+        assert np.abs(drawn.restitution - given).max() <= CUT * RESTITUTION
+    stocky = draw(breadth=np.array([1.40]), height=np.array([1.0]))
+    assert (stocky.restitution > 0).all()
+    assert np.median(stocky.restitution) < 0.1, "hardly any is left"
 
 
 def test_the_parts_of_a_piece_are_independent():
@@ -123,12 +120,6 @@ def test_the_parts_of_a_piece_are_independent():
     own = block.restitution(drawn.breadth[0], drawn.height[0], drawn.centre[0])
     parts = [*(one[0] for one in arrays(drawn)[:3]), drawn.restitution[0] - own, draw_earthquakes(1, 0, COUNT)]
     assert np.abs(np.corrcoef(parts) - np.eye(5)).max() < 4 / math.sqrt(COUNT)
-
-
-def test_a_stocky_body_has_hardly_any_restitution_left():
-    drawn = draw(breadth=np.array([1.40]), height=np.array([1.0]))
-    assert (drawn.restitution > 0).all()
-    assert np.median(drawn.restitution) < 0.1
 
 
 # --- what a draw depends on ---
@@ -187,7 +178,7 @@ def test_intervals_of_200_draws_cover_a_known_chance(chance):
     Draws are stratified, so that the interval of independent ones is wider than it has to be: the share that falls is
     within a 200th of the chance.
     """
-    limit = cut_normal().ppf(1 - chance)
+    limit = CUT_NORMAL.ppf(1 - chance)
     fallen = np.array([(draw_earthquakes(seed, 0, 200) > limit).sum() for seed in range(4000)])
     low, high = wilson_interval(fallen, 200)
     assert ((low <= chance) & (chance <= high)).all()
@@ -222,14 +213,11 @@ def test_numbers_of_two_places_have_a_common_part_and_one_by_distance(place, dis
     assert np.corrcoef(one, other)[0, 1] == pytest.approx(wanted, abs=4 / math.sqrt(MANY))
 
 
-def test_each_place_has_the_mean_and_spread_of_a_normal_number_cut_at_three():
+def test_each_place_has_a_normal_number_cut_at_three_by_seed_draw_and_place_alone():
     found = Earthquakes(place=OAKLAND).draw(1, 0, MANY)
     assert found.mean() == pytest.approx(0, abs=4 / math.sqrt(MANY))
     assert found.std() == pytest.approx(1, abs=0.03)
     assert np.abs(found).max() == CUT
-
-
-def test_a_number_depends_on_seed_draw_and_place_alone():
     alone = Earthquakes(place=OAKLAND).draw(1, 0, 600)
     for other in (MARKET_STREET, SAN_JOSE):
         Earthquakes(place=other).draw(1, 0, 600)
@@ -237,11 +225,12 @@ def test_a_number_depends_on_seed_draw_and_place_alone():
     assert not np.array_equal(Earthquakes(place=OAKLAND).draw(2, 0, 600), alone)
 
 
-def test_scenarios_come_in_their_order_again_and_again():
+def test_scenarios_come_in_their_order_again_and_again_and_are_cut_beyond_three_standard_deviations():
     given = (-1.2, 0.3, 0.9)
     found = Earthquakes(given=given, given_share=1.0).draw(1, 0, 7)
     assert found.tolist() == [*given, *given, -1.2]
     assert Earthquakes(given=given, given_share=1.0).draw(1, 5, 2).tolist() == [0.9, -1.2]
+    assert Earthquakes(given=(5.0, -4.0), given_share=1.0).draw(1, 0, 2).tolist() == [CUT, -CUT]
 
 
 def test_scenarios_carry_their_share_of_the_variance_and_the_rest_is_drawn():
@@ -250,7 +239,3 @@ def test_scenarios_carry_their_share_of_the_variance_and_the_rest_is_drawn():
     scenario = np.resize(given, MANY)
     assert np.corrcoef(found, scenario)[0, 1] == pytest.approx(math.sqrt(0.6), abs=0.02)
     assert found.std() == pytest.approx(1, abs=0.05)
-
-
-def test_a_scenario_beyond_three_standard_deviations_is_cut():
-    assert Earthquakes(given=(5.0, -4.0), given_share=1.0).draw(1, 0, 2).tolist() == [CUT, -CUT]

@@ -15,6 +15,7 @@ from assess.rocking import block, ensemble, kernel
 from assess.rocking.ensemble import Rocking, rock_blocks
 from assess.units import GRAVITY
 from tests.motion.test_external_records import FOLDER
+from tests.refusals import check_refusals
 from tests.rocking.reference import Found, integrate, of_sizes
 from tests.rocking.variants import kernel_with
 from tests.stopping import StopsAt
@@ -180,10 +181,7 @@ def test_a_quarter_period_is_that_of_the_quadrature(alpha: float, ratio: float) 
     while not one.impacts:
         one.step()
     assert one.time * 0.03 == pytest.approx(quarter_period(alpha, ratio * alpha), rel=1e-7)
-
-
-def test_the_quadrature_is_housners_formula_for_slender_blocks() -> None:
-    assert quarter_period(0.001, 0.0004) == pytest.approx(math.acosh(1 / 0.6), rel=1e-6)
+    assert quarter_period(0.001, 0.0004) == pytest.approx(math.acosh(1 / 0.6), rel=1e-6), "Housner's, of slender blocks"
 
 
 def test_chatter_ends_after_as_many_impacts_as_the_formula_says() -> None:
@@ -547,14 +545,11 @@ def test_neither_order_nor_company_changes_a_bit(found: Rocking, seed: int) -> N
     assert alike(own, pick(found, blocks, motions))
 
 
-def test_a_pair_alone_does_as_among_many(found: Rocking) -> None:
+def test_equal_blocks_do_the_same_and_a_pair_alone_as_among_many(found: Rocking) -> None:
     for at in range(0, 480, 7):
         b, m = at // 12, at % 12
         own = rock_blocks(BREADTHS[b], HEIGHTS[b], MOTIONS[m : m + 1], 0.01)
         assert alike(own, pick(found, np.array([b]), np.array([m])))
-
-
-def test_equal_blocks_do_the_same(found: Rocking) -> None:
     blocks = np.repeat([5, 11, 5, 30], 3)
     own = rock_blocks(BREADTHS[blocks], HEIGHTS[blocks], MOTIONS, 0.01)
     assert alike(own, pick(found, blocks, EVERY[1]))
@@ -643,55 +638,29 @@ def test_a_higher_centre_of_gravity_falls_under_more_motions() -> None:
 # --- what is refused ---
 
 
-@pytest.mark.parametrize(
-    ("breadth", "height"),
-    [(0, 1), (-0.4, 1), (0.4, 0), (math.nan, 1), (0.4, math.inf), ([0.4, math.nan], 1), ([[[0.4]]], [[[1.0]]])],
-)
-def test_sizes_that_cannot_be(breadth: object, height: object) -> None:
-    with pytest.raises(ValueError, match="breadth and height must be lists of finite numbers above 0 m"):
-        rock_blocks(breadth, height, MOTIONS, 0.01)
-
-
-@pytest.mark.parametrize("centre", [0, 1, -0.5, math.nan])
-def test_a_centre_of_gravity_outside_the_block_is_refused(centre: float) -> None:
-    with pytest.raises(ValueError, match="centre must be above 0 and below 1"):
-        rock_blocks(0.4, 1, MOTIONS, 0.01, centre=centre)
-
-
-@pytest.mark.parametrize("scale", [-1, math.nan, math.inf])
-def test_a_scale_that_cannot_be(scale: float) -> None:
-    with pytest.raises(ValueError, match="scale must be finite, and 0 or above"):
-        rock_blocks(0.4, 1, MOTIONS, 0.01, scale=scale)
-
-
-def test_sizes_by_motion_are_one_a_motion() -> None:
-    with pytest.raises(ValueError, match=r"blocks have 2 sizes each, expected 1 or \d+"):
-        rock_blocks([[0.4, 0.5]], 1, MOTIONS, 0.01)
-
-
-def test_stocky_blocks_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"a block with B/H of 1\.5 does not rock: expected below 1\.41"):
-        rock_blocks([0.4, 1.5], [1, 1], MOTIONS, 0.01)
-
-
-@pytest.mark.parametrize("restitution", [-0.1, 1.01, [0.9, 2.0], math.inf])
-def test_restitutions_that_cannot_be(restitution: object) -> None:
-    with pytest.raises(ValueError, match="restitution must be 0 to 1"):
-        rock_blocks([0.4, 0.5], [1, 1], MOTIONS, 0.01, restitution=restitution)
-
-
-@pytest.mark.parametrize(
-    "motions", [np.ones(5), np.ones((0, 5)), np.ones((3, 1)), np.ones((2, 2, 2)), np.array([[0, math.nan, 1]])]
-)
-def test_motions_that_cannot_be(motions: Array) -> None:
-    with pytest.raises(ValueError, match=r"motions have shape \(.*, expected \(k, n\) finite samples with n of 2"):
-        rock_blocks(0.4, 1, motions, 0.01)
-
-
-@pytest.mark.parametrize("time_step", [0.0, -0.01, math.nan, math.inf])
-def test_time_steps_that_cannot_be(time_step: float) -> None:
-    with pytest.raises(ValueError, match=f"time_step is {time_step} s, expected above 0"):
-        rock_blocks(0.4, 1, MOTIONS, time_step)
+def test_what_cannot_be_is_refused() -> None:
+    usual: dict[str, Any] = {"breadth": 0.4, "height": 1, "motions": MOTIONS, "time_step": 0.01}
+    cases: dict[str, list[dict[str, object]]] = {
+        "breadth and height must be lists of finite numbers above 0 m": [
+            {"breadth": breadth, "height": height}
+            for breadth, height in ((0, 1), (-0.4, 1), (0.4, 0), (math.nan, 1), (0.4, math.inf), ([0.4, math.nan], 1),
+                                    ([[[0.4]]], [[[1.0]]]))
+        ],
+        "centre must be above 0 and below 1": [{"centre": one} for one in (0, 1, -0.5, math.nan)],
+        "scale must be finite, and 0 or above": [{"scale": one} for one in (-1, math.nan, math.inf)],
+        r"blocks have 2 sizes each, expected 1 or \d+": [{"breadth": [[0.4, 0.5]]}],
+        r"a block with B/H of 1\.5 does not rock: expected below 1\.41": [{"breadth": [0.4, 1.5], "height": [1, 1]}],
+        "restitution must be 0 to 1": [
+            {"breadth": [0.4, 0.5], "height": [1, 1], "restitution": one} for one in (-0.1, 1.01, [0.9, 2.0], math.inf)
+        ],
+        r"motions have shape \(.*, expected \(k, n\) finite samples with n of 2": [
+            {"motions": one} for one in (np.ones(5), np.ones((0, 5)), np.ones((3, 1)), np.ones((2, 2, 2)),
+                                         np.array([[0, math.nan, 1]]))
+        ],
+        **{f"time_step is {one} s, expected above 0": [{"time_step": one}] for one in (0.0, -0.01, math.nan, math.inf)},
+    }  # fmt: skip
+    every = [(given, message) for message, all_given in cases.items() for given in all_given]
+    check_refusals(ValueError, lambda given: rock_blocks(**usual | given), every)
 
 
 # --- El Centro 1940, against two other programs ---

@@ -81,15 +81,9 @@ def test_robust_is_what_the_reference_says(robust):
 # --- the kernel ---
 
 
-def test_robust_pairs_agree(found):
+def test_robust_pairs_agree_as_many_overturn_and_disagreements_go_to_both_sides(found):
     assert (found[0] == OVER)[ROBUST].mean() >= 0.995
-
-
-def test_as_many_overturn(found):
     assert abs(found[0].mean() - OVER.mean()) <= 0.005
-
-
-def test_disagreements_go_to_both_sides(found):
     more, fewer = int((found[0] & ~OVER).sum()), int((~found[0] & OVER).sum())
     assert more + fewer == 0 or binomtest(more, more + fewer).pvalue > 0.05
 

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from assess.motion.record import treat
 from assess.results import BRANCHES
 from assess.rocking.sliding import UNKNOWN, Branch, branch, critical_friction, is_outside_shenton, peak_slip
 from assess.units import GRAVITY as G
+from tests.refusals import check_refusals
 from tests.stopping import StopsAt
 
 RECORD = Path(__file__).parents[2] / "samples" / "records" / "0165a_u.smc"
@@ -23,27 +25,17 @@ RECORD = Path(__file__).parents[2] / "samples" / "records" / "0165a_u.smc"
 # --- how it starts ---
 
 
-@pytest.mark.parametrize(
-    ("ratio", "a", "friction"),
-    [
-        (0.2222, 0.3, 0.2414),
-        (0.2222, 0.6, 0.3113),
-        (0.2222, 1.0, 0.3953),
-        (0.15, 0.4, 0.2108),
-        (0.30, 0.6, 0.3706),
+def test_shenton_1996_critical_friction_and_as_printed():
+    for ratio, a, friction in (
+        (0.2222, 0.3, 0.2414), (0.2222, 0.6, 0.3113), (0.2222, 1.0, 0.3953), (0.15, 0.4, 0.2108), (0.30, 0.6, 0.3706),
         (0.40, 0.8, 0.4906),
-    ],
-)
-def test_shenton_1996_critical_friction(ratio, a, friction):
-    assert critical_friction(ratio * 1.8, 1.8, a * G) == pytest.approx(friction, abs=5.1e-5)
-    assert critical_friction(ratio * 1.8, 1.8, -a * G) == critical_friction(ratio * 1.8, 1.8, a * G)
-
-
-def test_shenton_1996_as_printed():
+    ):  # fmt: skip
+        assert critical_friction(ratio * 1.8, 1.8, a * G) == pytest.approx(friction, abs=5.1e-5), (ratio, a)
+        assert critical_friction(ratio * 1.8, 1.8, -a * G) == critical_friction(ratio * 1.8, 1.8, a * G), (ratio, a)
     B, H = np.meshgrid(np.linspace(0.1, 1.0, 19), np.linspace(0.4, 2.5, 19))
-    gamma, a = H / B, B / H * np.linspace(1.0, 9.0, 19)
-    printed = (a * (4 + gamma**2) + 3 * gamma) / (1 + 4 * gamma**2 + 3 * a * gamma)
-    np.testing.assert_allclose(critical_friction(B, H, a * G), printed, rtol=1e-13)
+    gamma, high = H / B, B / H * np.linspace(1.0, 9.0, 19)
+    printed = (high * (4 + gamma**2) + 3 * gamma) / (1 + 4 * gamma**2 + 3 * high * gamma)
+    np.testing.assert_allclose(critical_friction(B, H, high * G), printed, rtol=1e-13)
 
 
 def test_critical_friction_at_uplift_and_far_above():
@@ -75,25 +67,16 @@ def test_critical_friction_is_what_the_edge_has_to_bear(centre, a):
     assert critical_friction(B, H, a * G, centre=centre) == pytest.approx(horizontal / vertical, rel=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("friction", "a", "expected"),
-    [
-        (0.10, 0.09, Branch.REST),
-        (0.50, 0.22, Branch.REST),
-        (0.10, 0.11, Branch.SLIDE),
-        (0.21, 2.00, Branch.SLIDE),
-        (0.50, 0.23, Branch.ROCK),
-        (0.3114, 0.60, Branch.ROCK),
-        (0.3112, 0.60, Branch.SLIDE_AND_ROCK),
-        (0.23, 0.60, Branch.SLIDE_AND_ROCK),
-        (0.22, 0.60, Branch.SLIDE),
-        (math.nan, 0.60, UNKNOWN),
+def test_branches():
+    for friction, a, expected in (
+        (0.10, 0.09, Branch.REST), (0.50, 0.22, Branch.REST), (0.10, 0.11, Branch.SLIDE), (0.21, 2.00, Branch.SLIDE),
+        (0.50, 0.23, Branch.ROCK), (0.3114, 0.60, Branch.ROCK), (0.3112, 0.60, Branch.SLIDE_AND_ROCK),
+        (0.23, 0.60, Branch.SLIDE_AND_ROCK), (0.22, 0.60, Branch.SLIDE), (math.nan, 0.60, UNKNOWN),
         (0.5, math.nan, UNKNOWN),
-    ],
-)
-def test_branches(friction, a, expected):
-    for sign in (1, -1):
-        assert branch(0.4, 1.8, friction, sign * a * G) == expected
+    ):  # fmt: skip
+        for sign in (1, -1):
+            assert branch(0.4, 1.8, friction, sign * a * G) == expected, (friction, a)
+    assert tuple(one.word for one in Branch) == BRANCHES, "results name the same"
 
 
 def test_branches_at_their_limits():
@@ -105,15 +88,12 @@ def test_branches_at_their_limits():
     assert branch(0.4, 1.8, ratio, 0.6 * G) == Branch.SLIDE_AND_ROCK
 
 
-def test_branches_of_many_bodies_and_their_words():
+def test_branches_of_many_bodies_with_their_words_and_of_a_high_centre_of_gravity():
     found = branch([0.4, 0.4, 0.9], 1.8, [0.1, 0.5, 0.3], 0.4 * G)
     assert [Branch(one).word for one in found] == ["slide", "rock", "slide"]
     assert Branch.REST.word == "rest"
     assert Branch.SLIDE_AND_ROCK.word == "slide and rock"
     assert found.shape == (3,)
-
-
-def test_a_high_centre_of_gravity_rocks_earlier():
     assert branch(0.4, 1.8, 0.4, 0.2 * G) == Branch.REST
     assert branch(0.4, 1.8, 0.4, 0.2 * G, centre=0.6) == Branch.ROCK
     assert branch(0.4, 1.8, 0.2, 0.3 * G) == Branch.SLIDE
@@ -222,15 +202,12 @@ def test_newmark_1965_by_scipy_under_a_record():
         assert one == pytest.approx(reference_slip(friction, values, motion.time_step), rel=1e-6)
 
 
-def test_slip_is_none_below_friction():
+def test_slip_is_none_below_friction_and_with_hardly_any_friction_the_body_stays_behind():
     motion = 0.3 * G * np.sin(2 * np.pi * np.arange(2001) * 0.005)[None]
     assert peak_slip(0.3001, motion, 0.005)[0, 0] == 0
     assert peak_slip(0.29, motion, 0.005)[0, 0] > 0
-
-
-def test_with_hardly_any_friction_the_body_stays_behind():
-    """One period of a sine of 1 s moves the ground by A / 2 pi, and leaves it at rest."""
     motion = 0.3 * G * np.sin(2 * np.pi * np.arange(2001) * 0.0005)[None]
+    # one period of a sine of 1 s moves the ground by A / 2 pi, and leaves it at rest
     assert peak_slip(1e-7, motion, 0.0005)[0, 0] == pytest.approx(0.3 * G / (2 * np.pi), rel=1e-5)
 
 
@@ -256,24 +233,16 @@ def test_slips_of_many_do_not_depend_on_each_other():
     assert (np.diff(many[:, -1]) < 0).all()
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
+def test_what_cannot_slide_and_a_cancel():
+    usual: dict[str, Any] = {"friction": 0.2, "motions": np.zeros((1, 5)), "time_step": 0.01}
+    check_refusals(ValueError, lambda change: peak_slip(**usual | change), [
         ({"friction": 0}, "friction must be"),
         ({"friction": math.nan}, "friction must be"),
         ({"motions": np.zeros(5)}, "motions have shape"),
         ({"motions": np.full((1, 5), np.inf)}, "motions have shape"),
         ({"time_step": 0.0}, "time_step is 0.0 s"),
         ({"scale": np.nan}, "scale must be"),
-    ],
-)
-def test_what_cannot_slide(change, message):
-    given = {"friction": 0.2, "motions": np.zeros((1, 5)), "time_step": 0.01, **change}
-    with pytest.raises(ValueError, match=message):
-        peak_slip(**given)
-
-
-def test_sliding_can_be_cancelled():
+    ])  # fmt: skip
     with pytest.raises(CancelledError):
         peak_slip(0.1, np.ones((5, 10)), 0.01, progress=StopsAt(3))
 
@@ -282,7 +251,3 @@ def test_how_it_starts_needs_no_compiler():
     code = "import sys, assess.rocking.sliding; print([one for one in ('numba', 'scipy') if one in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=True)
     assert done.stdout.strip() == "[]"
-
-
-def test_results_name_the_same_branches():
-    assert tuple(one.word for one in Branch) == BRANCHES

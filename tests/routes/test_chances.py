@@ -26,17 +26,14 @@ def pieces(draw, most=5):
     found = []
     for _ in range(draw(st.integers(1, most))):
         item = piece(
-            draw(st.sampled_from([0.4, 0.6, 1.2])),
-            0.0,
-            route="Way",
+            draw(st.sampled_from([0.4, 0.6, 1.2])), 0.0, route="Way",
             segment=draw(st.sampled_from(["in", "west", "east", ""])),
-        )
+        )  # fmt: skip
         count = draw(st.integers(0, RUNS))
         fell = np.random.default_rng(draw(st.integers(0, 99))).permutation(RUNS) < count
         is_simulated = draw(st.sampled_from([False, True, True]))
-        found.append(
-            (item, fell, is_simulated, draw(st.sampled_from([1, 1, 2])), draw(st.sampled_from([False, False, True])))
-        )
+        quantity, anchored = draw(st.sampled_from([1, 1, 2])), draw(st.sampled_from([False, False, True]))
+        found.append((item, fell, is_simulated, quantity, anchored))
     return found
 
 

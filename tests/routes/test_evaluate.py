@@ -24,15 +24,9 @@ def _ways(segments, elevations):
     return [[segments[at].segment for at in way.segment_indices] for way in found.rooms[0].ways]
 
 
-def test_up_one_stair_and_down_the_other_is_no_way_out():
+def test_up_one_stair_and_down_the_other_is_no_way_out_where_there_is_another_and_heights_are_known():
     assert _ways([OUT, UP, replace(DOWN, floor="")], {"1": 0.0, "9": 30.0}) == [["out"]]
-
-
-def test_it_is_where_there_is_no_other_or_nothing_is_known_of_heights():
     assert _ways([UP, replace(DOWN, floor="")], {"1": 0.0, "9": 30.0}) == [["up", "down"]]
     either = _ways([OUT, UP, replace(DOWN, floor="")], {"1": None, "9": None})
     assert sorted(either) == [["out"], ["up", "down"]]
-
-
-def test_a_basement_climbs_to_its_exit():
-    assert _ways([UP, replace(DOWN, floor="")], {"1": 0.0, "9": -3.0}) == [["up", "down"]]
+    assert _ways([UP, replace(DOWN, floor="")], {"1": 0.0, "9": -3.0}) == [["up", "down"]], "a basement climbs"

@@ -51,10 +51,6 @@ def lanes(sets):
     return {at: Together(one) for at, one in enumerate(sets)}
 
 
-def any_blocked(blocked, _every):
-    return union(blocked.values())
-
-
 def chance(couplings, sets, fixed):
     """Return the chance that a report goes by once these pieces are fixed."""
     ways = [couplings.joint] if couplings.is_joint else [couplings.joint, couplings.independent, couplings.correlated]
@@ -71,7 +67,7 @@ def chance(couplings, sets, fixed):
 @given(routes(), st.sampled_from([0.005, 0.031, 0.11, 0.33, 0.77]))
 def test_enough_and_none_too_many(drawn, risk):
     couplings, sets = drawn
-    steps, is_fixed = find_fixes(couplings, lanes(sets), any_blocked, risk)
+    steps, is_fixed = find_fixes(couplings, lanes(sets), lambda blocked, _: union(blocked.values()), risk)
     fixed = [item for item, _, _ in steps]
     assert is_fixed
     assert len(fixed) == len(set(fixed))

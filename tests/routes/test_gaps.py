@@ -112,19 +112,16 @@ def test_as_wide_as_a_person_can_be(items):
     """On the plan: somewhat less than what is left passes, somewhat more does not."""
     (one,) = find_obstructions(building(items, [corridor()], CORRIDOR))
     inside = shapely.box(-1, -0.9, 11, 0.9)
-    shapes = [_everywhere(item).intersection(inside) for item in items]
+    shapes = []
+    for item in items:  # what each may cover, standing and fallen either way, worked out from its corners
+        along = np.array([math.cos(math.radians(item.angle_deg)), math.sin(math.radians(item.angle_deg))])
+        across, reach = np.array([-along[1], along[0]]) * 0.3, along * (0.15 + item.height)
+        signs = ((1, 1), (1, -1), (-1, -1), (-1, 1))
+        corners = [(item.x, item.y) + sign * reach + side * across for sign, side in signs]
+        shapes.append(shapely.Polygon(corners).intersection(inside))
     left = one.gaps.residual(np.ones(len(one.gaps.keys), dtype=np.bool_))
     shapes = [shape for shape in shapes if shape.area > 1e-6]
     if left > 0.05:
         assert passes(left - 0.02, shapes)
     if left < 1.75:
         assert not passes(left + 0.02, shapes)
-
-
-def _everywhere(item):
-    """Return what a piece may cover, standing and fallen either way, worked out from its corners."""
-    along = np.array([math.cos(math.radians(item.angle_deg)), math.sin(math.radians(item.angle_deg))])
-    across = np.array([-along[1], along[0]]) * 0.3
-    reach = along * (0.15 + item.height)
-    corners = [(item.x, item.y) + sign * reach + side * across for sign, side in ((1, 1), (1, -1), (-1, -1), (-1, 1))]
-    return shapely.Polygon(corners)

@@ -15,9 +15,8 @@ NAMES = "abcdef"
 @st.composite
 def networks(draw, most=8):
     """Draw a network: its edges by number, and the kinds of places."""
-    pairs = draw(
-        st.lists(st.lists(st.sampled_from(NAMES), min_size=2, max_size=2, unique=True), min_size=1, max_size=most)
-    )
+    pair = st.lists(st.sampled_from(NAMES), min_size=2, max_size=2, unique=True)
+    pairs = draw(st.lists(pair, min_size=1, max_size=most))
     graph: nx.MultiGraph[str] = nx.MultiGraph()
     for at, (one, other) in enumerate(pairs):
         graph.add_edge(one, other, key=at)
@@ -37,9 +36,8 @@ def test_cut_off_is_what_networkx_cannot_reach(drawn, data):
     part, _ = drawn
     places = sorted({name for edge in part.edges for name in edge[:2]})
     width = max(part.segments) + 1
-    blocked = np.array(
-        [data.draw(st.lists(st.booleans(), min_size=width, max_size=width)) for _ in range(5)], dtype=np.bool_
-    )
+    rows = [data.draw(st.lists(st.booleans(), min_size=width, max_size=width)) for _ in range(5)]
+    blocked = np.array(rows, dtype=np.bool_)
     sets = dict(enumerate(to_sets(blocked)))
     found = [to_array(lost, len(blocked)) for lost in part.cut_off(sets, places, 0b11111)]
     for row, lost in zip(blocked, np.transpose(found), strict=True):

@@ -19,13 +19,10 @@ def test_a_segment_that_neither_plan_nor_piece_tells_of_is_not_evaluated():
     assert [(one.evaluated, one.unevaluated_segments) for one in found.routes] == [(True, ("b",)), (False, ("flight",))]
 
 
-def test_a_plan_that_no_piece_reaches_is_evaluated():
+def test_a_plan_that_no_piece_reaches_is_evaluated_and_a_room_tells_which_segments_of_its_ways_are_not():
     found = evaluated(make_falls([0.5]), [piece(1.0, x=50.0, y=50.0)], [corridor()], CORRIDOR)
     assert found.segments[0].evaluated
     assert found.rooms[0].unevaluated_segments == ()
-
-
-def test_a_room_tells_which_segments_of_its_ways_are_not():
     places = [*STAIRS, place("Office", "room", floor="2"), place("Street", "exit")]
     flight = stretch("flight", "Up", "Down", floor="", clear_width=None)
     segments = [stretch("office", "Office", "Up", floor="2"), flight, stretch("hall", "Down", "Street")]
@@ -33,18 +30,15 @@ def test_a_room_tells_which_segments_of_its_ways_are_not():
     assert [room.unevaluated_segments for room in found.rooms] == [("office", "flight")]
 
 
-@pytest.mark.parametrize(("items", "uncounted"), [
-    ([piece(2.0, x=5.0, y=1.5, angle_deg=90)], 0),
-    ([piece(2.0, 0.3)], 0),
-    ([piece(2.0, x=None, y=None, quantity=6)], 6),
-    ([piece(2.0, x=5.0, y=None), piece(2.0, x=5.0, y=8.0)], 1),
-])  # fmt: skip
-def test_pieces_of_which_nothing_tells_are_counted(items, uncounted):
-    found = evaluated(make_falls([0.5] * len(items)), items, [corridor()], CORRIDOR)
-    assert [one.uncounted_pieces for one in found.floors] == [uncounted]
-
-
-def test_a_position_tells_nothing_where_no_segment_has_a_plan():
+def test_pieces_of_which_nothing_tells_are_counted_and_a_position_tells_nothing_without_a_plan():
+    for items, uncounted in (
+        ([piece(2.0, x=5.0, y=1.5, angle_deg=90)], 0),
+        ([piece(2.0, 0.3)], 0),
+        ([piece(2.0, x=None, y=None, quantity=6)], 6),
+        ([piece(2.0, x=5.0, y=None), piece(2.0, x=5.0, y=8.0)], 1),
+    ):
+        found = evaluated(make_falls([0.5] * len(items)), items, [corridor()], CORRIDOR)
+        assert [one.uncounted_pieces for one in found.floors] == [uncounted], items
     found = evaluated(make_falls([0.5]), [piece(2.0, x=5.0, y=1.5, quantity=1)], [stretch("a")])
     assert [one.uncounted_pieces for one in found.floors] == [1]
 
@@ -62,13 +56,9 @@ def test_the_safest_way_is_not_the_one_of_which_nothing_is_known():
     assert [way.end for way in found.rooms[0].ways] == ["East", "Ladder"]
 
 
-# --- walls ---
-
-
-ROOMS = [("", True), ("Corridor", False), ("corridor; OFFICE", True), ("Office", True)]
-
-
-@pytest.mark.parametrize(("room", "reaches"), ROOMS)
+@pytest.mark.parametrize(
+    ("room", "reaches"), [("", True), ("Corridor", False), ("corridor; OFFICE", True), ("Office", True)]
+)
 def test_placed_pieces_of_other_rooms_do_not_reach_a_segment(room, reaches):
     cabinet = piece(2.0, x=5.0, y=1.5, angle_deg=90, width=0.8, room="Office")
     found = find_obstructions(building([cabinet], [corridor(room=room)], CORRIDOR))[0]

@@ -17,23 +17,20 @@ def falls_in(count: int, runs: int):
     return make_falls([count / runs], fell={0: [at < count for at in range(runs)]})
 
 
-@pytest.mark.parametrize(("count", "runs", "state"), [
-    (0, 100, DOUBTFUL), (0, 200, OPEN), (1, 300, OPEN), (3, 200, DOUBTFUL), (59, 200, DOUBTFUL), (60, 200, BLOCKED),
-    (200, 200, BLOCKED),
-])  # fmt: skip
-def test_by_the_chance_and_the_upper_end_of_its_interval(count, runs, state):
+def test_by_the_chance_and_the_upper_end_of_its_interval():
     """Wilson, 95 %: 0 of 100 is at most 3.7 %, 0 of 200 1.9 %, 1 of 300 1.9 %, 3 of 200 4.3 %; 60 of 200 is 0.3."""
-    found = evaluated(falls_in(count, runs), [WHOLE])
-    assert found.segments[0].state is found.routes[0].state is state
-    assert found.segments[0].missing == found.routes[0].missing == ()
+    for count, runs, state in (
+        (0, 100, DOUBTFUL), (0, 200, OPEN), (1, 300, OPEN), (3, 200, DOUBTFUL), (59, 200, DOUBTFUL), (60, 200, BLOCKED),
+        (200, 200, BLOCKED),
+    ):  # fmt: skip
+        found = evaluated(falls_in(count, runs), [WHOLE])
+        assert found.segments[0].state is found.routes[0].state is state, (count, runs)
+        assert found.segments[0].missing == found.routes[0].missing == ()
 
 
-def test_of_formulas_the_chance_itself_is_the_upper_end():
+def test_of_formulas_the_chance_itself_is_the_upper_end_and_the_chosen_risk_moves_open_and_not_blocked():
     states = [one_segment(make_falls([chance]), [WHOLE]).state for chance in (0.0299, 0.03, 0.2999, 0.3)]
     assert states == [OPEN, DOUBTFUL, DOUBTFUL, BLOCKED]
-
-
-def test_the_chosen_risk_moves_open_and_not_blocked():
     states = [one_segment(make_falls([0.1]), [WHOLE], risk=risk).state for risk in (0.05, 0.1, 0.2)]
     assert states == [DOUBTFUL, DOUBTFUL, OPEN]
     assert one_segment(make_falls([0.35]), [WHOLE], risk=0.5).state is BLOCKED
@@ -56,20 +53,17 @@ def test_a_piece_that_may_stand_anywhere_leaves_it_not_known():
     assert (row.what, row.names, row.cells) == ("positions", ("P0",), ("Items!A2",))
 
 
-@pytest.mark.parametrize("given", [
-    {"chance": 0.029}, {"chance": 0.2, "anchored": [True]}, {"chance": 0.2, "room": "Office"},
-    {"chance": 0.2, "floor": "2"}, {"chance": 0.2, "route": "Elsewhere"},
-], ids=["unlikely", "anchored", "another room", "another floor", "another route"])  # fmt: skip
-def test_one_that_cannot_matter_does_not(given):
-    assert (lone(**given).state, lone(**given).missing) == (OPEN, ())
-
-
-@pytest.mark.parametrize("given", [
-    {"chance": 0.01, "high": 0.03}, {"chance": 0.0, "in_record": [1]}, {"chance": 0.2, "room": "corridor"},
-    {"chance": 0.4, "unconfirmed": [0]},
-], ids=["upper end", "fell in the record", "own room", "unconfirmed"])  # fmt: skip
-def test_one_that_could_matter_does(given):
-    assert (lone(**given).state, [row.what for row in lone(**given).missing]) == (NOT_KNOWN, ["positions"])
+def test_one_that_cannot_matter_does_not_and_one_that_could_does():
+    for given in (
+        {"chance": 0.029}, {"chance": 0.2, "anchored": [True]}, {"chance": 0.2, "room": "Office"},
+        {"chance": 0.2, "floor": "2"}, {"chance": 0.2, "route": "Elsewhere"},
+    ):  # fmt: skip
+        assert (lone(**given).state, lone(**given).missing) == (OPEN, ()), given
+    for given in (
+        {"chance": 0.01, "high": 0.03}, {"chance": 0.0, "in_record": [1]}, {"chance": 0.2, "room": "corridor"},
+        {"chance": 0.4, "unconfirmed": [0]},
+    ):  # fmt: skip
+        assert (lone(**given).state, [row.what for row in lone(**given).missing]) == (NOT_KNOWN, ["positions"]), given
 
 
 @pytest.mark.parametrize(("quantity", "state"), [(1, OPEN), (2, NOT_KNOWN), (20, NOT_KNOWN)])
@@ -130,9 +124,12 @@ def test_a_segment_without_a_plan_needs_its_places():
     assert (low.state, low.evaluated, low.blocked.probability) == (OPEN, True, 0)
 
 
-def test_a_floor_of_which_no_furniture_is_listed_is_not_known_without_a_plan():
+def test_a_floor_without_furniture_is_not_known_without_a_plan_and_positions_are_asked_for_at_once():
     (found,) = evaluated(make_falls([]), [], [stretch()]).segments
     assert (found.state, found.evaluated) == (NOT_KNOWN, False)
+    ends = [place("West", "room"), place("East", "exit")]
+    found = evaluated(make_falls([0.2]), [piece(2.0, **LOOSE)], [corridor()], ends).segments[0]
+    assert [row.what for row in found.missing] == ["places", "positions"]
 
 
 def test_one_on_no_floor_that_joins_nothing_is_not_known_whatever_names_it():
@@ -141,12 +138,6 @@ def test_one_on_no_floor_that_joins_nothing_is_not_known_whatever_names_it():
     for chances, given, missing in (([0.001, 0.9], items, ["ends"]), ([], [], ["ends", "furniture"])):
         found = evaluated(make_falls(chances), given, [stretch(floor="", clear_width=1.2)]).segments[0]
         assert (found.state, [row.what for row in found.missing]) == (NOT_KNOWN, missing)
-
-
-def test_positions_of_places_and_of_pieces_are_asked_for_at_once():
-    ends = [place("West", "room"), place("East", "exit")]
-    found = evaluated(make_falls([0.2]), [piece(2.0, **LOOSE)], [corridor()], ends).segments[0]
-    assert [row.what for row in found.missing] == ["places", "positions"]
 
 
 # ---------------------------------------------------------------- the recorded motion

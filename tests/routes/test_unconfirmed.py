@@ -42,27 +42,21 @@ def test_one_that_does_not_matter_leaves_the_state_known():
     assert held.blocked_if_anchors_fail.probability == 1, "on the safe side"
 
 
-def test_blocked_wins_over_not_known():
+def test_blocked_wins_over_not_known_and_doubtful_or_blocked_is_not_known():
     """It is blocked in 2 of 4 draws with the other piece standing; with it fallen, always."""
     found = one_segment(told("1100", "0000", unconfirmed=[1]), [WHOLE, WHOLE])
     assert (found.state, found.missing) == (RouteState.BLOCKED, ())
     assert [found.blocked.probability, found.blocked_if_unconfirmed_fall.probability] == pytest.approx([1 / 2, 1])
-
-
-def test_doubtful_or_blocked_is_not_known():
-    """In 1 of 4 draws with the other piece standing, which is below 0.3; with it fallen, always."""
+    # in 1 of 4 draws with the other piece standing, which is below 0.3; with it fallen, always
     found = one_segment(told("1000", "0000", unconfirmed=[1]), [WHOLE, WHOLE])
     assert (found.state, whats(found)) == (RouteState.NOT_KNOWN, PERIOD)
 
 
-def test_one_that_only_narrows_it_leaves_it_open():
+def test_one_that_only_narrows_it_leaves_it_open_but_it_may_face_one_that_falls():
     found = one_segment(make_falls([0.9], unconfirmed=[0]), [HALF])
     assert (found.state, found.missing) == (RouteState.OPEN, ())
     assert found.blocked.probability == found.blocked_if_unconfirmed_fall.probability == 0
-
-
-def test_it_faces_one_that_falls():
-    """1100 alone only narrows the narrow segment; with an unconfirmed piece fallen opposite it blocks, in 2 of 4."""
+    # 1100 alone only narrows the narrow segment; with an unconfirmed piece fallen opposite it blocks, in 2 of 4
     found = one_segment(told("1100", "0000", unconfirmed=[1]), [HALF, HALF], NARROW)
     assert found.state is RouteState.NOT_KNOWN
     assert [found.blocked.probability, found.blocked_if_unconfirmed_fall.probability] == pytest.approx([0, 1 / 2])

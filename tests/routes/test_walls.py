@@ -15,7 +15,7 @@ from assess.routes.walls import (
     UNPLACED,
     find_walls,
     remark_on_walls,
-)
+)  # fmt: skip
 from tests.routes.buildings import CORRIDOR, building, corridor, evaluated, make_falls, piece, place
 
 OFFICE = ((0.0, 1.1), (8.0, 1.1), (8.0, 6.0), (0.0, 6.0))
@@ -36,61 +36,42 @@ def wall(item, *places):
     return find_walls(building([item], [], places or (room(),)))[0]
 
 
-@pytest.mark.parametrize(
-    ("x", "y", "angle", "toward"),
-    [
+def test_it_falls_away_from_the_side_of_its_room_that_it_stands_at():
+    for x, y, angle, toward in (
         (4, 1.3, 90, 90),  # at the wall to the corridor: it falls into the office
-        (4, 5.8, 90, 270),
-        (0.2, 3, 0, 0),
-        (7.8, 3, 0, 180),
+        (4, 5.8, 90, 270), (0.2, 3, 0, 0), (7.8, 3, 0, 180),
         (4, 1.3, 270, 90),  # the same piece, its Breadth named the other way round
         (4, 1.3, 95, 95),  # not quite along the wall
         (4, 1.3 + GAP - 0.01, 90, 90),
-    ],
-)
-def test_it_falls_away_from_the_side_of_its_room_that_it_stands_at(x, y, angle, toward):
-    assert wall(against(x, y, angle_deg=angle)).falls_toward == pytest.approx(toward)
+    ):  # fmt: skip
+        assert wall(against(x, y, angle_deg=angle)).falls_toward == pytest.approx(toward), (x, y, angle)
+    by_axis = wall(against(4, 1.3, angle_deg=None, axis="Y"))
+    assert by_axis.falls_toward == pytest.approx(90), "an axis gives the direction as well"
 
 
-@pytest.mark.parametrize(
-    ("item", "reason"),
-    [
-        (against(4, 3.5), NO_WALL_NEAR),
-        (against(4, 1.3 + GAP + 0.01), NO_WALL_NEAR),
-        (against(4, 1.3, angle_deg=0), NO_WALL_NEAR),  # its short side is at the wall
-        (against(4, 1.3, angle_deg=60), NO_WALL_NEAR),
-        (against(4, 0.8), OUTSIDE),
-        (against(None, None), UNPLACED),
-        (against(4, 1.3, angle_deg=None), UNPLACED),
-        (against(4, 1.3, axis="X"), CONTRARY),
-    ],
-)
-def test_where_the_side_is_not_known(item, reason):
-    found = wall(item)
-    assert (found.falls_toward, found.reason) == (None, reason)
-
-
-def test_an_axis_gives_the_direction_as_well():
-    assert wall(against(4, 1.3, angle_deg=None, axis="Y")).falls_toward == pytest.approx(90)
-
-
-def test_between_two_walls_the_side_is_not_known():
+def test_where_the_side_is_not_known():
     narrow = room(((0, 1.1), (8, 1.1), (8, 1.9), (0, 1.9)))
-    assert wall(against(4, 1.5), narrow).reason == BOTH
-
-
-def test_a_wall_that_is_behind_less_than_half_of_it_does_not_count():
     bent = room(((0, 1.1), (3.9, 1.1), (3.9, 0.5), (8, 0.5), (8, 6), (0, 6)))
-    assert wall(against(4, 1.3), bent).reason == NO_WALL_NEAR
+    for item, own, reason in (
+        (against(4, 3.5), (), NO_WALL_NEAR),
+        (against(4, 1.3 + GAP + 0.01), (), NO_WALL_NEAR),
+        (against(4, 1.3, angle_deg=0), (), NO_WALL_NEAR),  # its short side is at the wall
+        (against(4, 1.3, angle_deg=60), (), NO_WALL_NEAR),
+        (against(4, 0.8), (), OUTSIDE),
+        (against(None, None), (), UNPLACED),
+        (against(4, 1.3, angle_deg=None), (), UNPLACED),
+        (against(4, 1.3, axis="X"), (), CONTRARY),
+        (against(4, 1.5), (narrow,), BOTH),
+        (against(4, 1.3), (bent,), NO_WALL_NEAR),  # a wall that is behind less than half of it
+    ):
+        found = wall(item, *own)
+        assert (found.falls_toward, found.reason) == (None, reason), item
     assert wall(against(3.7, 1.3), bent).falls_toward == pytest.approx(90)
 
 
-def test_pieces_that_are_not_against_a_wall_have_none():
+def test_pieces_that_are_not_against_a_wall_have_none_nor_is_one_known_without_any_outline():
     items = [against(4, 1.3, against_wall=one) for one in (False, None)]
     assert find_walls(building(items, [], [room()])) == {}
-
-
-def test_without_any_outline():
     assert wall(against(4, 1.3), place("Office", "room", (1, 1))).reason == NO_OUTLINE
     assert wall(against(4, 1.3), replace(room(), floor="2")).reason == NO_OUTLINE
 
@@ -111,36 +92,27 @@ def test_a_room_without_an_outline_takes_the_buildings_edge():
     assert wall(against(7, -0.3, room="Hall"), west, east, hall).reason == OUTSIDE
 
 
-@pytest.mark.parametrize(
-    ("toward", "x", "y"), [(0, 1, 0), (180, -1, 0), (90, 0, 1), (265, 0, -1), (45, 1, 1), (135, -1, 1)]
-)
-def test_the_sense_along_an_axis(toward, x, y):
-    found = replace(wall(against(4, 1.3)), falls_toward=float(toward))
-    assert (found.sense("X"), found.sense("Y")) == (x, y)
-    assert replace(found, falls_toward=None).sense("X") == 0
+def test_the_sense_along_an_axis():
+    for toward, x, y in ((0, 1, 0), (180, -1, 0), (90, 0, 1), (265, 0, -1), (45, 1, 1), (135, -1, 1)):
+        found = replace(wall(against(4, 1.3)), falls_toward=float(toward))
+        assert (found.sense("X"), found.sense("Y")) == (x, y), toward
+        assert replace(found, falls_toward=None).sense("X") == 0
 
 
 # --- routes ---
 
 
-def reached(item, *places):
-    return find_obstructions(building([item], [corridor()], (*CORRIDOR, *places)))[0].pieces
-
-
-@pytest.mark.parametrize(
-    ("item", "places", "flag"),
-    [
+def test_otherwise_it_does():
+    """Not against a wall, on a side that is not known, or with the wall behind it and the corridor ahead."""
+    for item, places, flag in (
         (against(4, 1.3), (), "wall_side_unknown"),
         (against(4, 1.3, against_wall=False), (room(),), None),
         (against(4, 1.3, against_wall=None), (room(),), None),
         (against(4, 1.3), (room(((0, 0.5), (8, 0.5), (8, 1.6), (0, 1.6))),), "falls_from_wall"),
-    ],
-)
-def test_otherwise_it_does(item, places, flag):
-    """Not against a wall, on a side that is not known, or with the wall behind it and the corridor ahead."""
-    (one,) = reached(item, *places)
-    assert one.reach_m == pytest.approx(0.9 + 0.9)
-    assert {"falls_from_wall", "wall_side_unknown"} & {*one.flags} == ({flag} if flag else set())
+    ):
+        (one,) = find_obstructions(building([item], [corridor()], (*CORRIDOR, *places)))[0].pieces
+        assert one.reach_m == pytest.approx(0.9 + 0.9)
+        assert {"falls_from_wall", "wall_side_unknown"} & {*one.flags} == ({flag} if flag else set()), item
 
 
 def test_the_chance_of_a_blocked_corridor():
