@@ -8,7 +8,6 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -24,22 +23,13 @@ def find_pythons() -> dict[str, str]:
     """Return the interpreter of each other version that is installed and can make environments."""
     found = {}
     for version in list_versions():
-        usable = (python for python in _list_places(version) if _is_usable(python, version))
-        if python := next(usable, None):
-            found[version] = python
+        pyenv = Path(os.environ.get("PYENV_ROOT") or Path.home() / ".pyenv")
+        code = f"import sys, venv, ensurepip; sys.exit('%d.%d' % sys.version_info[:2] != {version!r})"
+        for python in (shutil.which(f"python{version}"), *sorted(pyenv.glob(f"versions/{version}.*/bin/python"))):
+            if python and not subprocess.run([python, "-c", code], stderr=subprocess.DEVNULL, check=False).returncode:
+                found[version] = str(python)
+                break
     return found
-
-
-def _list_places(version: str) -> Iterator[str]:
-    if on_path := shutil.which(f"python{version}"):
-        yield on_path
-    pyenv = Path(os.environ.get("PYENV_ROOT") or Path.home() / ".pyenv")
-    yield from map(str, sorted(pyenv.glob(f"versions/{version}.*/bin/python")))
-
-
-def _is_usable(python: str, version: str) -> bool:
-    code = f"import sys, venv, ensurepip; sys.exit('%d.%d' % sys.version_info[:2] != {version!r})"
-    return subprocess.run([python, "-c", code], stderr=subprocess.DEVNULL, check=False).returncode == 0
 
 
 if __name__ == "__main__":

@@ -9,18 +9,12 @@ PIECE = {"weight": 1.2, "centre": 0.90, "height": 1.70}
 """A cabinet of 1.2 kN, 0.40 m deep, held at 1.70 m."""
 
 
-@pytest.mark.parametrize(("vertical", "tensions"), [(0.0, [0.0494, 0.2400, 0.4941]), (0.2, [0.0776, 0.2682, 0.5224])])
-def test_tension_of_physics_f(vertical, tensions):
-    found = find_tension(**PIECE, acceleration=[0.3, 0.6, 1.0], breadth=0.40, vertical=vertical)
-    assert found == pytest.approx(tensions, abs=5e-5)
-
-
-def test_tension_without_the_weight_of_physics_f():
+def test_tension_and_friction_that_the_base_needs_of_physics_f():
+    for vertical, tensions in ((0.0, [0.0494, 0.2400, 0.4941]), (0.2, [0.0776, 0.2682, 0.5224])):
+        found = find_tension(**PIECE, acceleration=[0.3, 0.6, 1.0], breadth=0.40, vertical=vertical)
+        assert found == pytest.approx(tensions, abs=5e-5), vertical
     found = find_tension_without_weight(**PIECE, acceleration=[0.3, 0.6, 1.0])
-    assert found == pytest.approx([0.1906, 0.3812, 0.6353], abs=5e-5)
-
-
-def test_friction_that_the_base_needs_of_physics_f():
+    assert found == pytest.approx([0.1906, 0.3812, 0.6353], abs=5e-5), "without the weight"
     tension = find_tension(**PIECE, acceleration=0.6, breadth=0.40, vertical=0.2)
     found = find_needed_friction(weight=1.2, acceleration=0.6, tension=tension, vertical=0.2)
     assert found == pytest.approx(0.471, abs=5e-4)

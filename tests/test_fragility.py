@@ -9,6 +9,7 @@ from scipy.optimize import minimize
 from scipy.stats import binom, norm
 
 from assess.fragility import MOST_MISFIT, WHY, fit_fragility, lognormal_chance
+from tests.refusals import check_refusals
 
 LEVELS = np.geomspace(0.05, 1.6, 12)
 
@@ -40,9 +41,7 @@ def test_drawn_counts_scatter_about_the_known_fragility():
     assert scatter[0] < 0.04
 
 
-@given(
-    st.lists(st.tuples(st.floats(0.05, 3), st.integers(1, 60), st.floats(0, 1)), min_size=2, max_size=10),
-)
+@given(st.lists(st.tuples(st.floats(0.05, 3), st.integers(1, 60), st.floats(0, 1)), min_size=2, max_size=10))
 def test_no_other_parameters_are_likelier(rows):
     im = np.array([row[0] for row in rows])
     trials = np.array([row[1] for row in rows], dtype=float)
@@ -105,20 +104,12 @@ def test_order_units_and_division_of_the_trials_do_not_matter():
 @pytest.mark.parametrize(
     ("fallen", "kind"),
     [
-        ([0, 0, 0, 0], "none fell"),
-        ([10, 10, 10, 10], "all fell"),
-        ([0, 0, 10, 10], "separated"),
-        ([0, 4, 10, 10], "separated"),
-        ([3, 10, 10, 10], "separated"),
-        ([0, 0, 0, 7], "separated"),
-        ([10, 10, 0, 0], "not rising"),
-        ([10, 4, 0, 0], "not rising"),
-        ([8, 6, 5, 3], "not rising"),
-        ([5, 5, 5, 5], "not rising"),
-        ([0, 4, 9, 10], "fitted"),
-        ([1, 0, 10, 10], "fitted"),
+        ([0, 0, 0, 0], "none fell"), ([10, 10, 10, 10], "all fell"), ([0, 0, 10, 10], "separated"),
+        ([0, 4, 10, 10], "separated"), ([3, 10, 10, 10], "separated"), ([0, 0, 0, 7], "separated"),
+        ([10, 10, 0, 0], "not rising"), ([10, 4, 0, 0], "not rising"), ([8, 6, 5, 3], "not rising"),
+        ([5, 5, 5, 5], "not rising"), ([0, 4, 9, 10], "fitted"), ([1, 0, 10, 10], "fitted"),
     ],
-)
+)  # fmt: skip
 def test_data_without_a_fit_say_so(fallen, kind):
     fit = fit_fragility([0.1, 0.2, 0.4, 0.8], fallen, [10, 10, 10, 10])
     assert fit.kind == kind
@@ -149,7 +140,7 @@ def test_the_chance_of_a_lognormal():
 
 
 def test_counts_that_cannot_be():
-    for counts, message in (
+    check_refusals(ValueError, lambda counts: fit_fragility(*counts), [
         (([0.1, 0.2], [1], [2, 2]), "have shapes"),
         (([0.1, math.nan], [1, 1], [2, 2]), "must be finite"),
         (([0.0, 0.2], [1, 1], [2, 2]), "levels must be above 0"),
@@ -157,6 +148,4 @@ def test_counts_that_cannot_be():
         (([0.1, 0.2], [-1, 1], [2, 2]), "fallen 0 to trials"),
         (([0.1, 0.2], [0, 0], [0, 0]), "no trials"),
         (([], [], []), "no trials"),
-    ):
-        with pytest.raises(ValueError, match=message):
-            fit_fragility(*counts)
+    ])  # fmt: skip

@@ -11,6 +11,7 @@ from assess.hazard import find_distance, parse_hazard
 from assess.i18n import Text
 from assess.units import GRAVITY as G
 from tests.hazards import read_hazard
+from tests.refusals import check_refusals
 
 DATA = Path(__file__).parent / "data" / "hazard"
 CASE_33, CASE_44 = (DATA / f"oq-case{number}-hazard_curve-mean-PGA.csv" for number in (33, 44))
@@ -52,10 +53,16 @@ def test_tables_as_people_write_them(text):
     assert not curve.is_far
 
 
-def test_tables_in_latin_1_and_with_level_rates():
+def test_tables_in_latin_1_with_level_rates_or_a_last_line_that_may_be_cut_off():
     assert parse_hazard("# sito: città\n".encode("latin-1") + PLAIN.encode(), "x.csv").rate.size == 3
     level = parse("pga_g,annual_rate\n0.01,0.02\n0.1,0.02\n0.4,0.002\n").rate
     np.testing.assert_array_equal(level, [0.02, 0.02, 0.002])
+    # The last rate would be read as a smaller one; what people type may end without an end of line.
+    text = "pga_g,annual_rate\n0.1,0.0123\n0.4,0.0019"
+    assert parse(f"{text}\n").notes == ()
+    for cut in (text, text[:-1]):
+        (note,) = parse(cut).notes
+        assert str(note).startswith("the last line of the hazard file has no end: see that its last rate is whole")
 
 
 @pytest.mark.parametrize(
@@ -75,21 +82,17 @@ def test_tables_in_latin_1_and_with_level_rates():
         ("pga_g,annual_rate\n0.05,0.02\n0.1,1e999\n", "curve.csv: line 3: annual_rate is '1e999', not a number"),
         ("pga_g,annual_rate\n0.05,0.02\n1_0,0.01\n", "curve.csv: line 3: pga_g is '1_0', not a number"),
         ("pga_g,annual_rate\n0,0.02\n0.1,0.01\n", "curve.csv: line 2: pga_g is 0, expected above 0 and at most 50"),
-        (
-            "pga_g,annual_rate\n5,0.02\n98.1,0.01\n",
-            "curve.csv: line 3: pga_g is 98.1, expected above 0 and at most 50, in g",
-        ),
+        ("pga_g,annual_rate\n5,0.02\n98.1,0.01\n",
+         "curve.csv: line 3: pga_g is 98.1, expected above 0 and at most 50, in g"),
         ("pga_g,annual_rate\n0.05,0.02\n0.1,0\n", "curve.csv: line 3: annual_rate is 0, expected above 0"),
         ("pga_g,annual_rate\n0.05,0.02\n0.1,-1e-3\n", "curve.csv: line 3: annual_rate is -0.001, expected above 0"),
         ("pga_g,annual_rate\n0.1,0.02\n0.05,0.01\n", "curve.csv: line 3: pga_g 0.05 does not rise from 0.1"),
         ("pga_g,annual_rate\n0.1,0.02\n0.1,0.01\n", "curve.csv: line 3: pga_g 0.1 does not rise from 0.1"),
-        (
-            "pga_g,annual_rate\n0.1,50\n0.2,475\n",
-            "curve.csv: line 3: annual_rate rises from 50 to 475, but it has to fall as",
-        ),
+        ("pga_g,annual_rate\n0.1,50\n0.2,475\n",
+         "curve.csv: line 3: annual_rate rises from 50 to 475, but it has to fall as"),
         ("pga_g,annual_rate\n0.1,0.01\n0.2,0.01\n", "curve.csv: the annual rate is the same in every row"),
     ],
-)
+)  # fmt: skip
 def test_tables_that_cannot_be_used(text, message):
     with pytest.raises(InputError) as raised:
         parse(text)
@@ -97,28 +100,23 @@ def test_tables_that_cannot_be_used(text, message):
     assert isinstance(raised.value.message, Text), "it can be translated"
 
 
-def test_files_that_are_no_text_or_too_large(monkeypatch):
-    for data in (b"PK\x03\x04", b"\xff\xfep\0g\0a\0", b"pga_g\0"):
-        with pytest.raises(InputError, match=r"x\.csv: the file is not plain text\. Save it as CSV UTF-8"):
-            parse_hazard(data, "x.csv")
+def test_files_that_are_no_text_or_too_large_or_cannot_be_read(monkeypatch, tmp_path):
+    no_text = r"x\.csv: the file is not plain text\. Save it as CSV UTF-8"
+    check_refusals(InputError, lambda data: parse_hazard(data, "x.csv"), [
+        (b"PK\x03\x04", no_text), (b"\xff\xfep\0g\0a\0", no_text), (b"pga_g\0", no_text),
+        # str.splitlines() makes a line of each of these signs, too: at ten times the memory of the file.
+        (b"pga_g,annual_rate\n0.1\x0b0.2\x1c0.3\n", r"line 2: the number of cells is 1, not 2"),
+    ])  # fmt: skip
+    unread = [(tmp_path / "none.csv", r"none\.csv: the file cannot be read \(No such file")]
+    check_refusals(InputError, read_hazard, [*unread, (tmp_path, "the file cannot be read")])
+    many = r"^x\.csv: the file has more than 1,500,000 cells: cut it to the sites near"
+    monkeypatch.setattr("assess.hazard.find_distance", pytest.fail)
+    check_refusals(InputError, lambda mark: parse_hazard(b"pga_g,annual_rate\n" + mark * 1_500_000, "x.csv"), [
+        (mark, many) for mark in (b"1,", b"1\n", b";", b"\t", b"\r")
+    ])  # fmt: skip
     monkeypatch.setattr("assess.hazard.LARGEST_FILE", 20)
     with pytest.raises(InputError, match="larger than"):
         parse(PLAIN)
-
-
-def test_files_with_too_many_cells(monkeypatch):
-    monkeypatch.setattr("assess.hazard.find_distance", pytest.fail)
-    for mark in (b"1,", b"1\n", b";", b"\t", b"\r"):
-        with pytest.raises(
-            InputError, match=r"^x\.csv: the file has more than 1,500,000 cells: cut it to the sites near"
-        ):
-            parse_hazard(b"pga_g,annual_rate\n" + mark * 1_500_000, "x.csv")
-
-
-def test_lines_end_where_other_programs_end_them():
-    # str.splitlines() makes a line of each of these signs, too: at ten times the memory of the file.
-    with pytest.raises(InputError, match=r"line 2: the number of cells is 1, not 2"):
-        parse("pga_g,annual_rate\n0.1\x0b0.2\x1c0.3\n")
 
 
 # --- OpenQuake ---
@@ -195,21 +193,11 @@ def test_sites_that_cannot_be_used(change, message):
 
 
 def test_several_sites_need_a_place():
-    for where in ({}, {"latitude": 42.0}, {"longitude": 13.0}):
-        with pytest.raises(InputError, match="the file has 3 sites: the building's latitude and longitude are needed"):
-            parse(SITES, **where)
+    needed = "the file has 3 sites: the building's latitude and longitude are needed"
+    places: tuple[dict[str, float], ...] = ({}, {"latitude": 42.0}, {"longitude": 13.0})
+    check_refusals(InputError, lambda where: parse(SITES, **where), [(where, needed) for where in places])
     with pytest.raises(InputError, match="there are no sites"):
         parse("\n".join(SITES.splitlines()[:2]))
-
-
-# --- files and distances ---
-
-
-def test_files_that_cannot_be_read(tmp_path):
-    with pytest.raises(InputError, match=r"none\.csv: the file cannot be read \(No such file"):
-        read_hazard(tmp_path / "none.csv")
-    with pytest.raises(InputError, match="the file cannot be read"):
-        read_hazard(tmp_path)
 
 
 def test_distances():
@@ -217,15 +205,6 @@ def test_distances():
     degree = math.pi * 6_371_000 / 180
     found = find_distance(0.0, 179.0, np.array([1.0, 90.0, 0.0, 0.0]), np.array([179.0, 10.0, -180.0, -1.0]))
     np.testing.assert_allclose(found, np.array([1, 90, 1, 180]) * degree, rtol=1e-9)
-
-
-def test_a_table_that_may_be_cut_off_is_remarked_on():
-    """Its last rate would be read as a smaller one; what people type may end without an end of line."""
-    text = "pga_g,annual_rate\n0.1,0.0123\n0.4,0.0019"
-    assert parse_hazard(f"{text}\n".encode(), "h.csv").notes == ()
-    for cut in (text, text[:-1]):
-        (note,) = parse_hazard(cut.encode(), "h.csv").notes
-        assert str(note).startswith("the last line of the hazard file has no end: see that its last rate is whole")
 
 
 @pytest.mark.parametrize("name", ["oq-case33", "oq-case44"])

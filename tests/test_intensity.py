@@ -57,12 +57,8 @@ def test_pga_of_a_jma_class_follows_from_pgv():
     assert 100 * shaking.pgv == pytest.approx(31.2, rel=0.002)
     assert shaking.pga / GRAVITY == pytest.approx(0.297, rel=0.003)
     assert [one.name for one in SHAKINGS.values() if one.is_derived] == [one for one in BY_NAME if "JMA" in one]
-
-
-def test_the_ratio_of_pgv_to_pga_is_that_between_soil_and_rock_of_newmark_and_hall():
-    """122 and 91 cm/s per g: their geometric mean is 105.4."""
-    found = 100 * RATIO * GRAVITY
-    assert found == pytest.approx(math.sqrt(122 * 91), rel=0.005)
+    # The ratio is that between soil and rock of Newmark and Hall: the geometric mean of 122 and 91 cm/s per g.
+    assert pytest.approx(math.sqrt(122 * 91), rel=0.005) == 100 * RATIO * GRAVITY
 
 
 def test_an_open_class_does_not_stand_for_its_lower_limit():
@@ -81,15 +77,12 @@ def test_pgv_decides_on_the_class_and_what_is_weak_or_beyond_has_the_nearest_wor
     assert name_mmi(3 * GRAVITY, 6.0) == "MMI X, extreme"
 
 
-def test_the_scatter_is_the_published_one_of_pgv():
-    """0.38 log10 units given MMI, rounded up."""
+def test_the_scatter_is_the_published_one_of_pgv_and_that_of_a_jma_class_has_its_width_and_that_of_the_equation():
+    """0.38 log10 units given MMI, rounded up; JMA 5 upper by hand: sqrt(0.144^2 + 0.21^2)/1.72 = 0.148 log10 units of
+    PGV; 4 is twice as wide."""
     for shaking in SHAKINGS.values():
         if not shaking.is_derived:
-            assert 0 <= shaking.scatter - 0.38 * math.log(10) < 0.01
-
-
-def test_the_scatter_of_a_jma_class_adds_its_width_to_that_of_the_equation():
-    """5 upper by hand: sqrt(0.144^2 + 0.21^2)/1.72 = 0.148 log10 units of PGV; 4 is twice as wide."""
+            assert 0 <= shaking.scatter - 0.38 * math.log(10) < 0.01, shaking.name
     assert BY_NAME["JMA 5+"].scatter == pytest.approx(0.148 * math.log(10), abs=0.011)
     assert BY_NAME["JMA 4"].scatter > BY_NAME["JMA 5+"].scatter >= 0.21 / 1.72 * math.log(10)
 

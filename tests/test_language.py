@@ -24,7 +24,7 @@ from assess.i18n import (
     number,
     placeholders,
     speaking,
-)
+)  # fmt: skip
 from assess.report.provenance import say_date
 from docs.texts import collect
 

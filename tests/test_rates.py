@@ -107,18 +107,14 @@ def test_by_the_definition_summed_up():
         assert found.beyond == pytest.approx(last / found.rate, rel=1e-4)
 
 
-def test_a_table_of_many_points_tends_to_its_lognormal():
+def test_a_table_of_many_points_tends_to_its_lognormal_and_a_narrow_lognormal_to_a_step():
     curve, levels = power_law(12, low=0.01, high=3), np.geomspace(0.01, 5, 3000) * G
     table = integrate_table(curve, levels, lognormal_chance(levels, 0.5 * G, 0.4))
     assert table.rate == pytest.approx(integrate_lognormal(curve, median=0.5 * G, dispersion=0.4).rate, rel=1e-5)
-
-
-def test_a_narrow_lognormal_tends_to_a_step():
     curve = read_hazard(DATA / "oq-case44-hazard_curve-mean-PGA.csv")
     step = integrate_lognormal(curve, median=0.3 * G, dispersion=0)
-    assert step.rate == pytest.approx(
-        math.exp(np.interp(math.log(0.3 * G), np.log(curve.pga), np.log(curve.rate))), rel=1e-12
-    )
+    rate = math.exp(np.interp(math.log(0.3 * G), np.log(curve.pga), np.log(curve.rate)))
+    assert step.rate == pytest.approx(rate, rel=1e-12)
     for beta in (1e-3, 1e-6):
         narrow = integrate_lognormal(curve, median=0.3 * G, dispersion=beta)
         assert narrow.rate == pytest.approx(step.rate, rel=20 * beta)
@@ -149,7 +145,7 @@ def test_what_falls_more_often_has_a_larger_rate():
     assert both[1] / both[0] == pytest.approx(math.exp(0.5**2 * 2.5**2 / 2), rel=1e-5)
 
 
-def test_the_ends_of_the_curve():
+def test_the_ends_of_the_curve_and_what_never_falls():
     curve = power_law(6, low=0.2, high=0.6)
     found = integrate_lognormal(curve, median=0.5 * G, dispersion=0.5)
     whole = integrate_lognormal(power_law(40), median=0.5 * G, dispersion=0.5)
@@ -160,9 +156,6 @@ def test_the_ends_of_the_curve():
     chance = norm.cdf(math.log(0.6 / 0.5) / 0.5)
     assert found.beyond == pytest.approx(last * chance / found.rate, rel=1e-9)
     assert found.most == pytest.approx(found.rate + last * (1 - chance), rel=1e-9)
-
-
-def test_nothing_falls():
     curve = power_law(5, low=0.01, high=1)
     found = integrate_table(curve, np.array([0.1, 1.0, 2.0]) * G, [0.0, 0.0, 0.0])
     assert (found.rate, found.beyond, found.below) == (0, 0, 0)
