@@ -14,10 +14,6 @@ from tests.shaking import write_records
 from tests.workbooks import write
 
 PACKAGE = Path(assess.__file__).parent
-FIRST_USE = (
-    "import numpy as np\nfrom assess.motion.recipe import bend_rows\n"
-    "bend_rows(np.ones((1, 10), np.float32), 1.0, 0.1)\n"
-)
 
 
 def _child(code, **changes):
@@ -41,7 +37,11 @@ def _kept(folder):
 def test_it_is_kept_in_the_users_folder(tmp_path):
     """Only this package's functions are kept there, not those that a notebook compiles afterwards."""
     before = _kept(PACKAGE)
-    code = f"from numba import config\nbefore = config.CACHE_DIR\n{FIRST_USE}assert config.CACHE_DIR == before"
+    code = (
+        "import numpy as np\nfrom numba import config\nbefore = config.CACHE_DIR\n"
+        "from assess.motion.recipe import bend_rows\nbend_rows(np.ones((1, 10), np.float32), 1.0, 0.1)\n"
+        "assert config.CACHE_DIR == before"
+    )
     _child(code, XDG_CACHE_HOME=tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["assess"]
     assert [name for name in _kept(tmp_path / "assess") if name.startswith("bend_rows-") or ".bend_rows-" in name]
@@ -77,24 +77,18 @@ MOST_APART = 0.06
 it."""
 
 
-GENERIC = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}
-
-
 @pytest.mark.long
 def test_a_processor_without_wide_vectors_gives_the_same_risks(tmp_path):
     """All is compiled anew for it, and summed in another order."""
     write_records(tmp_path, "slow")
     path = write(tmp_path / "w.xlsx", ITEMS, FLOORS)
     risks = []
-    for name, changes in (("native", {}), ("generic", GENERIC)):
+    for name, changes in (("native", {}), ("generic", {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""})):
         out = tmp_path / name
         words = ["assess", "run", str(path), "--verify", "all", "--formats", "json", "--out", str(out)]
         code = f"import sys\nfrom assess.cli.app import main\nsys.argv = {words!r}\nmain()"
-        _child(
-            code,
-            NUMBA_CACHE_DIR=tmp_path / f"cache-{name}" if changes else os.environ.get("NUMBA_CACHE_DIR"),
-            **changes,
-        )
+        cache = tmp_path / f"cache-{name}" if changes else os.environ.get("NUMBA_CACHE_DIR")
+        _child(code, NUMBA_CACHE_DIR=cache, **changes)
         found = json.loads((out / "results.json").read_text(encoding="utf-8"))
         risks.append({one["item"]: one["verification"]["probability"] for one in found["items"]})
     assert _kept(tmp_path / "cache-generic"), "NUMBA_CACHE_DIR names another folder"

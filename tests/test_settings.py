@@ -5,16 +5,14 @@ import pytest
 import assess
 from assess.errors import SettingsError
 from assess.settings import SCENARIOS, Settings, change_settings, match_choice
+from tests.refusals import check_refusals
 
 WRONG = [
     ("scenario", "ASCE 7-10", "scenario is 'ASCE 7-10', expected one of: as filled, recorded, given, ASCE 7-22"),
     ("scenario", 7, "scenario is 7, expected one of: as filled"),
     ("verify", "maybe", "verify is 'maybe', expected one of: none, high, all"),
     ("verify", None, "verify is None, expected one of"),
-    *(
-        ("runs", runs, f"runs is {runs!r}, expected 1 to 100,000, or auto")
-        for runs in (0, -1, 100_001, "x", None, True)
-    ),
+    *(("runs", n, f"runs is {n!r}, expected 1 to 100,000, or auto") for n in (0, -1, 100_001, "x", None, True)),
     ("runs", 2.5, "runs is 2.5, expected 1 to 100,000, or auto"),
     ("runs", "9" * 5000, "runs is '999999999999999999999999999999999999999..., expected 1 to"),
     ("seed", -1, "seed is -1, expected a whole number, 0 or above"),
@@ -53,12 +51,11 @@ def test_choices_are_matched_in_any_spelling():
 def test_settings_are_changed_by_keyword():
     assert change_settings(None, {}) == Settings()
     assert change_settings(Settings(seed=3), {"verify": "none"}) == Settings(seed=3, verify="none")
-    with pytest.raises(SettingsError, match=r"^verfy is an unknown setting\. Did you mean verify\?$"):
-        change_settings(None, {"verfy": "none"})
-    with pytest.raises(SettingsError, match="xyz is an unknown setting; expected one of: scenario, class_by"):
-        change_settings(None, {"xyz": 1})
-    with pytest.raises(SettingsError, match="runs is 0, expected"):
-        change_settings(None, {"runs": 0})
+    check_refusals(SettingsError, lambda change: change_settings(None, change), [
+        ({"verfy": "none"}, r"^verfy is an unknown setting\. Did you mean verify\?$"),
+        ({"xyz": 1}, "xyz is an unknown setting; expected one of: scenario, class_by"),
+        ({"runs": 0}, "runs is 0, expected"),
+    ])  # fmt: skip
 
 
 def test_the_package_offers_its_names_before_they_are_loaded():

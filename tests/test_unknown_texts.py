@@ -93,11 +93,8 @@ def test_texts_of_a_record(tmp_path: Path) -> None:
     (tmp_path / "a.AT2").write_bytes(record())
     lines = [f"{0.01 * at:.2f},{value:.6f}" for at, value in enumerate(RECORDS["pulse"])]
     (tmp_path / "a.csv").write_text("\n".join(["time [s],a\x1b\x9b\u202ex [g]", *lines]), encoding="utf-8")
-    for words, part in (
-        (["a.AT2"], "]0;PWN\ufffd\ufffd31m"),
-        (["a.AT2", "--json"], "]0;PWN"),
-        (["a.csv"], "a\ufffd\ufffdx"),
-    ):
+    sought = ((["a.AT2"], "]0;PWN\ufffd\ufffd31m"), (["a.AT2", "--json"], "]0;PWN"), (["a.csv"], "a\ufffd\ufffdx"))
+    for words, part in sought:
         done = run("record", tmp_path / words[0], *words[1:])
         assert done.exit_code == 0
         assert part in done.stdout, done.output

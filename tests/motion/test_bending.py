@@ -5,16 +5,7 @@ import pytest
 
 from assess.arrays import FloatArray
 from assess.motion.generate import MOST_SHARPENED
-from assess.motion.recipe import (
-    MOST_BENT,
-    TAPER,
-    bend_rows,
-    bend_to,
-    build_taper,
-    lift_rows,
-    measure_rows,
-    shape_rows,
-)
+from assess.motion.recipe import MOST_BENT, TAPER, bend_rows, bend_to, build_taper, lift_rows, measure_rows, shape_rows
 from assess.motion.target import Grid
 from tests.motion.motions import GROUND, TWELFTH, read_motion
 

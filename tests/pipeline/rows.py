@@ -26,11 +26,7 @@ def read_sheets(folder: Path | None = None, ground: GroundField | None = None, *
 
 
 def assessed(
-    items: Rows,
-    floors: Rows = FLOORS,
-    folder: Path | None = None,
-    settings: Settings = UNVERIFIED,
-    **building: Any,
+    items: Rows, floors: Rows = FLOORS, folder: Path | None = None, settings: Settings = UNVERIFIED, **building: Any
 ) -> Results:
     """Return the results of such rows, by the formulas alone where no settings are given."""
     return assess.run(read(items, floors, folder, **building), settings, figures=False)

@@ -166,8 +166,7 @@ ROOF = Floor(row=5, floor="R", elevation=40.0)
 
 
 @pytest.mark.parametrize(
-    ("scenario", "amplification"),
-    [("ASCE 7-22", 2.25), ("ASCE 7-16", 2.0), ("EN 1998-1", 1.75), ("NTC 2018", 1.5)],
+    ("scenario", "amplification"), [("ASCE 7-22", 2.25), ("ASCE 7-16", 2.0), ("EN 1998-1", 1.75), ("NTC 2018", 1.5)]
 )
 def test_by_a_code_a_floor_follows_from_the_ground(scenario, amplification):
     """z/h = 20/40 = 0.5: 1 + 2.5 x 0.5, 1 + 2 x 0.5, 1 + 1.5 x 0.5, 1 + 0.5."""

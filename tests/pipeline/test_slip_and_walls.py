@@ -10,10 +10,7 @@ from tests.pipeline.rows import read_sheets
 from tests.shaking import write_records
 
 SETTINGS = Settings(runs=40)
-FLOORS = [
-    {"floor": "1", "record_x": "pulse.csv"},
-    {"floor": "2", "pfa_x": 0.4, "pfv_x": 50, "pfa_y": 0.4, "pfv_y": 50},
-]
+FLOORS = [{"floor": "1", "record_x": "pulse.csv"}, {"floor": "2", "pfa_x": 0.4, "pfv_x": 50, "pfa_y": 0.4, "pfv_y": 50}]
 SIZES = {"slender": (30, 180), "usual": (45, 180), "low": (60, 80), "stocky": (145, 100), "top-heavy": (45, 180)}
 OUTLINE = "0 1.1; 8 1.1; 8 6; 0 6"
 

@@ -8,15 +8,7 @@ import pytest
 import assess
 from assess.portfolio import building_inventory, building_task
 from assess.portfolio.building_rows import build_skipped
-from assess.portfolio.building_task import (
-    Part,
-    Task,
-    find_key,
-    find_place,
-    read_part,
-    run_task,
-    write_part,
-)
+from assess.portfolio.building_task import Part, Task, find_key, find_place, read_part, run_task, write_part
 from assess.portfolio.sources import IndexRow, Source, find_sources
 from assess.portfolio.table_schemas import TABLES
 from assess.settings import Settings

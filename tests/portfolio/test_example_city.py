@@ -11,15 +11,7 @@ import assess
 from assess import resources
 from assess.errors import InputError
 from assess.portfolio.background import read_background
-from assess.portfolio.example_city import (
-    BUILDINGS,
-    COAST,
-    GRID,
-    INDEX,
-    README,
-    list_buildings,
-    write_example_city,
-)
+from assess.portfolio.example_city import BUILDINGS, COAST, GRID, INDEX, README, list_buildings, write_example_city
 from assess.portfolio.sources import COLUMNS
 from tests.workbooks import UNVERIFIED
 

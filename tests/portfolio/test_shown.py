@@ -123,8 +123,7 @@ CASES = [(kind, language) for kind in RENDERERS for language in LANGUAGES] + [("
 
 
 @pytest.mark.parametrize(
-    ("kind", "language"),
-    [pytest.param(*one, marks=[pytest.mark.slow] if one[0] == "pdf" else []) for one in CASES],
+    ("kind", "language"), [pytest.param(*one, marks=[pytest.mark.slow] if one[0] == "pdf" else []) for one in CASES]
 )
 def test_outputs_say_what_they_said(kind, language, tmp_path, monkeypatch, differ):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1767225600")

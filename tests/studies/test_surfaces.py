@@ -9,16 +9,7 @@ from hypothesis import given, settings, strategies as st
 from assess.errors import InputError
 from assess.methods import Cases, proposed_or
 from assess.methods.fitted import expand
-from assess.studies.fit import (
-    CANDIDATES,
-    CONSTANT,
-    EQUATION_8,
-    LeftOut,
-    Points,
-    fit_surface,
-    leave_out,
-    rank_surfaces,
-)
+from assess.studies.fit import CANDIDATES, CONSTANT, EQUATION_8, LeftOut, Points, fit_surface, leave_out, rank_surfaces
 from assess.units import ACCELERATION
 
 RATIOS, PEAKS = np.linspace(0.10, 0.50, 17), np.linspace(98.1, 882.9, 9)
