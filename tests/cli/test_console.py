@@ -178,11 +178,8 @@ def test_a_line_repeats_what_was_reported_last(clock):
     clock.now += REPEAT
     line.repeat()
     assert stream.getvalue().splitlines() == [
-        "Working, 2 s so far",
-        "Writing pdf: 0 %",
-        "Writing pdf: 0 %, 12 s so far",
-        "Working, 17 s so far",
-    ]
+        "Working, 2 s so far", "Writing pdf: 0 %", "Writing pdf: 0 %, 12 s so far", "Working, 17 s so far",
+    ]  # fmt: skip
 
 
 SLOW = """

@@ -79,15 +79,11 @@ def test_a_number_that_can_be_read_in_two_ways_is_refused_with_both(tmp_path):
 
 def test_a_number_that_can_be_read_in_one_way_within_the_range_is_read(tmp_path):
     for name, typed, number in (
-        ("latitude", "37.789", 37.789),
-        ("longitude", "\u2212122,419", -122.419),
-        ("ground_pga_g", "0,150", 0.15),
-        ("height_m", "10.500", 10.5),
-        ("floor_area_m2", "25.000,5", 25000.5),
-        ("floor_area_m2", "1.250.000", 1250000.0),
-        ("floor_area_m2", "25 000", 25000.0),
+        ("latitude", "37.789", 37.789), ("longitude", "\u2212122,419", -122.419), ("ground_pga_g", "0,150", 0.15),
+        ("height_m", "10.500", 10.5), ("floor_area_m2", "25.000,5", 25000.5),
+        ("floor_area_m2", "1.250.000", 1250000.0), ("floor_area_m2", "25 000", 25000.0),
         ("floor_area_m2", "2.5e3", 2500.0),
-    ):
+    ):  # fmt: skip
         other = {"latitude": "longitude", "longitude": "latitude"}.get(name, "use")
         assert getattr(_read(tmp_path, f"path;{name};{other}\na.xlsx;{typed};1\n")[0], name) == number, typed
     with pytest.raises(InputError, match=r"line 2: height_m is 1050\.5, expected 2 to 1000"):
