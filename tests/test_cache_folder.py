@@ -74,8 +74,9 @@ def test_the_group_of_one_user_is_no_other(tmp_path, own, monkeypatch):
     named, group = made(tmp_path / "named", 0o770), tmp_path.stat().st_gid
     user = pwd.struct_passwd(("ann", "x", os.getuid(), group, "", "", ""))
     monkeypatch.setattr(pwd, "getpwuid", lambda _: user)
-    cases = (([], "ann", True), (["ann"], "ann", True), (["bob"], "ann", False), ([], "all", False))
-    for members, name, is_safe in cases:
+    for members, name, is_safe in (
+        ([], "ann", True), (["ann"], "ann", True), (["bob"], "ann", False), ([], "all", False),
+    ):  # fmt: skip
         monkeypatch.setattr(grp, "getgrgid", lambda _, n=name, m=members: grp.struct_group((n, "x", group, m)))
         examine_folder.cache_clear()
         assert (choose_folder(str(named))[0] == named) is is_safe, (members, name)

@@ -38,23 +38,12 @@ def test_the_wheel_carries_templates_catalogue_schema_and_types(wheel):
     names = set(listed)
     assert len(names) == len(listed), "no file hides another"
     sought = [
-        "templates/page.html.j2",
-        "templates/style/print.css",
-        "templates/studies/table3.md.j2",
-        "templates/city.html.j2",
-        "templates/script/city.js",
-        "workbook/catalogue.csv",
-        "report/results.schema.json",
-        "py.typed",
-        "web/page/index.html",
-        "web/page/main.mjs",
-        "fonts/IBMPlexSans-Regular.ttf",
-        "fonts/LICENSE.txt",
-        "studies/facts/table1_buildings.csv",
-        "examples/market-street.xlsx",
-        "examples/city/grid.xml",
+        "templates/page.html.j2", "templates/style/print.css", "templates/studies/table3.md.j2",
+        "templates/city.html.j2", "templates/script/city.js", "workbook/catalogue.csv", "report/results.schema.json",
+        "py.typed", "web/page/index.html", "web/page/main.mjs", "fonts/IBMPlexSans-Regular.ttf", "fonts/LICENSE.txt",
+        "studies/facts/table1_buildings.csv", "examples/market-street.xlsx", "examples/city/grid.xml",
         "examples/city/coast.geojson",
-    ]
+    ]  # fmt: skip
     assert {f"assess/{name}" for name in sought} <= names
     records = {name.split("/")[2] for name in names if name.startswith("assess/records/")}
     assert records == {"575-market", "berkeley-1103", "others"}
