@@ -14,6 +14,7 @@ import re
 import time
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent import futures
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -285,7 +286,8 @@ def _hand_over(
                     raise OutputError.about("a worker failed: {why}", why=why) from error
                 try:
                     summary: Summary = future.result()
-                except (OSError, TimeoutError, asyncio.CancelledError):  # the scheduler died when the answer was there
+                except (OSError, TimeoutError, asyncio.CancelledError, futures.CancelledError):
+                    # the scheduler died when the answer was there
                     raise lost from None
                 yield summary
     finally:
