@@ -14,8 +14,7 @@ import re
 import time
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent import futures
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import CancelledError as FutureCancelled, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -286,7 +285,7 @@ def _hand_over(
                     raise OutputError.about("a worker failed: {why}", why=why) from error
                 try:
                     summary: Summary = future.result()
-                except (OSError, TimeoutError, asyncio.CancelledError, futures.CancelledError):
+                except (OSError, TimeoutError, asyncio.CancelledError, FutureCancelled):
                     # the scheduler died when the answer was there
                     raise lost from None
                 yield summary
