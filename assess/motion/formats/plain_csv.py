@@ -37,6 +37,7 @@ from assess.units import ACCELERATION, TIME, read_unit
 
 KEYS = ("station", "event", "start", "location", "azimuth", "corrected")
 BLOCK = 2**20
+CHECKED_EVERY = 10_000  # lines
 """Bytes that are read at once."""
 MOST_HEAD = 2**19
 """Bytes of the comments and headings: a thousand for each channel."""
@@ -236,7 +237,7 @@ def _read_block(block: bytes, table: _Table, first: int) -> FloatArray:
             pass
     numbers: list[float] = []
     for line, text in enumerate(map(decode, block.removesuffix(b"\n").split(b"\n")), start=first):
-        if line % 10_000 == 0:
+        if line % CHECKED_EVERY == 0:
             check_waits()
         if is_comment(text) or _is_blank(text):
             continue
