@@ -37,8 +37,8 @@ from assess.units import ACCELERATION, TIME, read_unit
 
 KEYS = ("station", "event", "start", "location", "azimuth", "corrected")
 BLOCK = 2**20
-CHECKED_EVERY = 10_000  # lines
 """Bytes that are read at once."""
+CHECKED_EVERY = 10_000  # lines
 MOST_HEAD = 2**19
 """Bytes of the comments and headings: a thousand for each channel."""
 
