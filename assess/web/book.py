@@ -74,7 +74,7 @@ class Book:
         self._now = self._opened = self._snap(workbook)
         self._saved, self._data, self._is_saved = workbook, data, True
         self._opened_live: LiveRows | None = None
-        self._written: tuple[Workbook, bytes] = (workbook, data)
+        self._written: tuple[Snapshot, bytes] = (self._now, data)
         self._missing: list[dict[str, Any]] | None = None
 
     def _snap(self, workbook: Workbook) -> Snapshot:
@@ -210,7 +210,7 @@ class Book:
                 now, opened, live, written = self._now, self._opened, self._opened_live, self._written
                 if self._is_saved:
                     return now, self._data
-            if written[0] is now.workbook:
+            if written[0] is now:  # a file that was added changes results as well
                 return now, written[1]
             if live is None:
                 is_live = bool(self.sheets[ITEMS.name].live)
@@ -221,7 +221,7 @@ class Book:
                 data = now.workbook.store(results).to_bytes()
             with self._lock:
                 if self._opened is opened:
-                    self._opened_live, self._written = live, (now.workbook, data)
+                    self._opened_live, self._written = live, (now, data)
             return now, data
 
     def save(self) -> None:

@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape, unescape
-from typing import Protocol
 
 from assess.i18n import Text, fill
 from assess.workbook.open import SHEET_COLUMNS, SHEET_ROWS, Area
@@ -75,11 +74,8 @@ class Growth:
         return Growth(tuple(one for one in self.blocks if not one[2].isdisjoint(own)))
 
 
-class Move(Protocol):
-    """Where areas come to lie: a shift of rows, or a growth."""
-
-    def area(self, area: Area, /) -> Area | None:
-        """Return where an area comes to lie; None where it is gone."""
+Move = RowShift | Growth
+"""Where areas come to lie."""
 
 
 # ---------------------------------------------------------------- references in texts
@@ -214,7 +210,7 @@ class PartShift:
     * `move`: where its cells come to lie.
     """
 
-    def __init__(self, sheet: str, is_own: bool, move: RowShift | Growth) -> None:
+    def __init__(self, sheet: str, is_own: bool, move: Move) -> None:
         self.sheet, self.is_own, self.move = sheet, is_own, move
         self.shift = move if isinstance(move, RowShift) else None
         self.areas = AREAS if self.shift else GROWING
