@@ -49,7 +49,7 @@ def test_a_file_that_is_added_counts_in_what_is_written(tmp_path):
         tmp_path / "b.xlsx", Content({"Floors": floors, "Items": [{"item": "A", "floor": "1", "height": 180}]})
     )
     book = Book.hold("b.xlsx", (tmp_path / "b.xlsx").read_bytes(), tmp_path)
-    place = book.sheets["Items"].place("breadth", 2)
+    place = book.sheets["Items"].place("breadth", 2) or ()
     book.edit(book.version, [["Items", *place, 45]], "typing")
     before = book.write()
     book.add_file("a.smc", record)
