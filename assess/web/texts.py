@@ -40,7 +40,7 @@ def describe_texts(language: str) -> dict[str, Any]:
 
 def list_texts() -> list[tuple[str, str, str]]:
     """Return every text of the page, its other form for more than one, else blank, and the module that names it."""
-    paths = sorted(PAGE.rglob("*.mjs"))
+    paths = sorted(PAGE.glob("*.mjs"))
     return list(_list_texts(tuple((path, path.stat().st_mtime_ns) for path in paths)))
 
 
