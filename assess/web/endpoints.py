@@ -26,6 +26,7 @@ from starlette.routing import Route
 
 from assess.errors import AssessError
 from assess.i18n import fill, load_catalogue, speaking
+from assess.web.assets import answer_asset, find_asset, pack
 from assess.web.file_names import clean_name
 from assess.web.guard import MODELS, MOST_MODEL, MOST_SKIPPED, SESSION, skip_body
 from assess.web.importing import FOLDER, ROUTES, SOURCE
@@ -33,7 +34,7 @@ from assess.web.jobs import REPORT, Job
 from assess.web.request_errors import BAD_REQUEST, NOT_FOUND, TOO_LARGE, UNUSABLE, RequestError, describe_fault
 from assess.web.sessions import Session
 from assess.web.starting import choose, choose_shaking, describe_start
-from assess.web.texts import COOKIE, PAGE, choose_language, describe_texts
+from assess.web.texts import COOKIE, choose_language, describe_texts
 
 if TYPE_CHECKING:
     from assess.web.book import Book
@@ -49,11 +50,6 @@ LOOK = 1.5
 WORKBOOK = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
 PICTURE_POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'; sandbox"
 """An SVG has styles and pictures of its own; nothing else of it counts."""
-TYPES = {
-    ".html": "text/html", ".css": "text/css", ".mjs": "text/javascript", ".js": "text/javascript",
-    ".svg": "image/svg+xml",
-}  # fmt: skip
-"""Kinds of the files of the page, whatever the registry of the machine calls them."""
 LOG = logging.getLogger("assess.web")
 Answer = dict[str, Any] | Response
 Handler = Callable[["Asked"], Answer]
@@ -75,7 +71,7 @@ class Asked:
     def book(self) -> "Book":
         """The open workbook; RequestError where there is none."""
         if self.session.book is None:
-            raise RequestError(fill("No workbook is open."), NOT_FOUND, more=describe_start(self.session.home))
+            raise RequestError(fill("No workbook is open."), NOT_FOUND)
         return self.session.book
 
     @property
@@ -102,6 +98,13 @@ def _note_download(asked: Asked, answer: dict[str, Any]) -> dict[str, Any]:
     session, state = asked.session, answer["state"]
     is_downloaded = asked.book.mode == "held" and session.downloaded == state["version"]
     return {**answer, "state": {**state, "unsaved": False}} if is_downloaded else answer
+
+
+def _describe_book(asked: Asked) -> Answer:
+    """Answer with the book; with what can be begun where there is none yet, which is no error."""
+    if asked.session.book is None:
+        return describe_start(asked.session.home)
+    return _note_download(asked, asked.book.describe())
 
 
 def _describe_state(asked: Asked) -> Answer:
@@ -277,7 +280,7 @@ def _after(act: Callable[[Asked], object], describe: Handler) -> Handler:
 
 TABLE: tuple[tuple[str, int, Mapping[str, Handler]], ...] = (
     ("GET", 0, {
-        "/api/book": lambda asked: _note_download(asked, asked.book.describe()),
+        "/api/book": _describe_book,
         "/api/state": _describe_state, "/api/download": _download, "/api/live": _describe_live,
         **{f"/api/{one}": partial(_evaluate, one) for one in ("routes", "plan", "picture", "catalogue")},
         "/api/job": _describe_job, "/api/job/report": _find_report,
@@ -321,25 +324,18 @@ def build_application(note_edit: Callable[[Session], None]) -> Starlette:
                     asked = replace(asked, data=data) if most == MOST_FILE else replace(asked, body=_parse_body(data))
             except (RequestError, OSError) as error:
                 fault = error
-            return await run_in_threadpool(_carry_out, handler, asked, fault)
+            return await run_in_threadpool(lambda: pack(_carry_out(handler, asked, fault), request.headers))
 
         return Route(path, serve, methods=[method])
 
     def give_file(request: Request) -> Response:
-        found = find_page_file(request.path_params["name"])
-        return found or _refuse(RequestError(fill("There is nothing at this address."), NOT_FOUND))
+        found = find_asset(request.path_params["name"])
+        if found is None:
+            return _refuse(RequestError(fill("There is nothing at this address."), NOT_FOUND))
+        return answer_asset(found, request.headers, request.query_params.get("v", ""))
 
     routes = [route(path, method, most, one) for method, most, every in TABLE for path, one in every.items()]
     return Starlette(routes=[*routes, Route("/{name:path}", give_file, methods=["GET"])])
-
-
-def find_page_file(name: str) -> Response | None:
-    """Return a file of the page by its name; nothing outside its folder has one."""
-    files = {path.relative_to(PAGE).as_posix(): path for path in PAGE.rglob("*") if path.is_file()}
-    path = files.get(name or "index.html")
-    if path is None:
-        return None
-    return Response(path.read_bytes(), media_type=TYPES.get(path.suffix, "application/octet-stream"))
 
 
 def _ask(request: Request, note_edit: Callable[[Session], None]) -> Asked:

@@ -1,5 +1,6 @@
 """What every request must satisfy, on a running server."""
 
+import gzip
 import re
 import socket
 from urllib.parse import urlsplit
@@ -110,7 +111,10 @@ def test_every_answer_confines_the_page_and_its_files_alone_are_given_with_their
         found = {name: reply.headers[name] for name in (
             "x-content-type-options", "cache-control", "referrer-policy", "cross-origin-opener-policy",
             "cross-origin-resource-policy")}  # fmt: skip
-        assert list(found.values()) == ["nosniff", "no-store", "no-referrer", "same-origin", "same-origin"]
+        kept = (
+            "no-cache" if reply.headers["etag"] else "no-store"
+        )  # a file of the page is asked for again, nothing else is kept
+        assert list(found.values()) == ["nosniff", kept, "no-referrer", "same-origin", "same-origin"]
         assert reply.headers["server"] is None
     assert client.get("/").headers["content-type"] == "text/html; charset=utf-8"
     assert client.get("/main.mjs").headers["content-type"] == "text/javascript; charset=utf-8"
@@ -119,6 +123,33 @@ def test_every_answer_confines_the_page_and_its_files_alone_are_given_with_their
                  "/etc/passwd", "//etc/passwd", "/..%5cguard.py", "/main.mjs%00.html", "/C:/Windows/win.ini",
                  "/api/job/file/../../job.json", "/api/job/file/..%2f..%2fjob.json"):  # fmt: skip
         assert client.get(path).status == 404, path
+
+
+def test_files_of_the_page_are_sent_once_and_answers_are_compressed_where_the_browser_takes_it(client):
+    gzipped = {"Accept-Encoding": "deflate, gzip;q=0.8"}
+    for path in ("/", "/main.mjs", "/page.css", "/fonts/IBMPlexSans-Regular.woff2"):
+        plain, packed = client.get(path), client.get(path, **gzipped)
+        assert (plain.headers["content-encoding"], plain.headers["cache-control"]) == (None, "no-cache")
+        assert int(packed.headers["content-length"]) == len(packed.data)
+        if path.startswith("/fonts"):  # compressed already
+            assert (packed.headers["content-encoding"], packed.data[:4]) == (None, b"wOF2")
+        else:
+            assert (packed.headers["content-encoding"], packed.headers["vary"]) == ("gzip", "accept-encoding")
+            assert gzip.decompress(packed.data) == plain.data
+        mark = plain.headers["etag"]
+        same = client.get(path, **{"If-None-Match": f'"x", {mark}'})
+        assert (same.status, same.data, same.headers["etag"]) == (304, b"", mark)
+        assert client.get(path, **{"If-None-Match": '"x"'}).status == 200
+        assert Client(client.base).get(path, **{"If-None-Match": mark}).status == 401
+        fixed = client.get(f"{path}?v={mark[3:11]}")
+        assert "immutable" in fixed.headers["cache-control"]
+        assert client.get(f"{path}?v=00000000").headers["cache-control"] == "no-cache"
+    plain, packed = client.get("/api/start"), client.get("/api/start", **gzipped)
+    assert packed.headers["content-encoding"] == "gzip"
+    assert gzip.decompress(packed.data) == plain.data
+    assert len(packed.data) < len(plain.data) / 3
+    for path, accepted in (("/api/state", "gzip"), ("/api/start", "gzip;q=0"), ("/api/start", "br")):
+        assert client.get(path, **{"Accept-Encoding": accepted}).headers["content-encoding"] is None
 
 
 def test_what_is_too_large_cannot_be_read_or_is_no_workbook_is_refused(client):

@@ -13,7 +13,7 @@ from openpyxl import load_workbook
 from playwright.sync_api import expect
 
 import assess.web
-from assess.web.endpoints import find_page_file
+from assess.web.assets import find_asset
 from tests.conftest import EXAMPLE
 from tests.web.looking import THEMES, VIEWS, examine, note_requests, show
 from tests.web.opened import write_office
@@ -64,15 +64,21 @@ def test_the_page_is_small_and_complete_names_no_other_server_and_makes_no_eleme
     name = re.compile(r'(?:from |import\(|href=|src=)"(?:\./)?([\w-]+\.(?:mjs|css))"')
     named = {found for path in files for found in name.findall(path.read_text("utf-8"))}
     assert len(named) > 20
-    assert [name for name in sorted(named) if find_page_file(name) is None] == []
+    assert [name for name in sorted(named) if find_asset(name) is None] == []
     for path in PAGE.glob("*.mjs"):
         text = path.read_text("utf-8").replace("http://www.w3.org/", "")
         assert not re.search(r"https?://|innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(", text), (
             path.name
         )
-    assert not re.search(
-        r"https?://|@import|url\((?!#)", "".join(path.read_text("utf-8") for path in PAGE.rglob("*.css"))
-    )
+    styles = "".join(path.read_text("utf-8") for path in PAGE.rglob("*.css"))
+    assert not re.search(r"https?://|@import|url\((?!#|\"/fonts/)", styles)
+    fonts = re.findall(r'"/(fonts/[\w.-]+)\?v=(\w+)"', styles + (PAGE / "index.html").read_text("utf-8"))
+    assert len(fonts) == 4
+    assert all(find_asset(name).mark.startswith(version) for name, version in fonts)
+    icons = re.findall(r"^  (\w+): \"M", (PAGE / "icons.mjs").read_text("utf-8"), re.MULTILINE)
+    used = re.findall(r'\bicon\("(\w+)"', "".join(path.read_text("utf-8") for path in PAGE.glob("*.mjs")))
+    assert len(icons) == len(set(icons))
+    assert set(used) <= set(icons)
 
 
 @browsing

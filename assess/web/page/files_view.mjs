@@ -62,7 +62,7 @@ function places(store, cells) {
   const links = cells.slice(0, NAMED).map((cell) => {
     const [name, row, at] = cell;
     const go = () => (dialog.close(), (location.hash = "#sheet"), store.reveal(cell));
-    return el("button", { type: "button", class: "plain", text: cellName(store.sheet(name), row, at), on: { click: go } });
+    return el("button", { type: "button", class: "quiet", text: cellName(store.sheet(name), row, at), on: { click: go } });
   });
   const more = cells.length - NAMED;
   return [links, more > 0 && ` ${tn("and {n} more", "and {n} more", more)}`];

@@ -5,6 +5,7 @@ import { clear, el } from "./elements.mjs";
 import { cellText, cellValue, classColumn, describeCell, hasChoices, isComputed, problemText, simulatedColumn } from "./grid_cells.mjs";
 import { RowOrder } from "./grid_rows.mjs";
 import { Selection } from "./grid_selection.mjs";
+import { icon } from "./icons.mjs";
 import { cellName, isFilled } from "./sheet.mjs";
 import { t } from "./texts.mjs";
 
@@ -169,7 +170,7 @@ export class Grid extends EventTarget {
   #headCell(column, c) {
     const rule = this.order.sort?.column.label === column.label ? (this.order.sort.down ? "descending" : "ascending") : null;
     const label = el("span", { class: "grid-label" }, column.label, column.unit ? el("span", { class: "grid-unit", text: ` [${column.unit}]` }) : null);
-    const menu = el("button", { type: "button", class: "grid-menu-button", tabindex: "-1", "aria-label": t("Sort and filter {column}", { column: column.label }), text: rule === "ascending" ? "▲" : rule ? "▼" : "▾" });
+    const menu = el("button", { type: "button", class: "grid-menu-button", tabindex: "-1", "aria-label": t("Sort and filter {column}", { column: column.label }), }, icon(rule === "ascending" ? "up" : "down"));
     menu.classList.toggle("used", Boolean(rule) || this.order.filters.has(column.label));
     const edge = el("div", { class: "grid-edge", "aria-hidden": "true" });
     const cell = el("div", { class: "grid-cell", role: "columnheader", title: [`${column.label}${column.unit ? ` [${column.unit}]` : ""}`, column.help].filter(Boolean).join("\n"), "aria-colindex": c + 2, "aria-sort": rule, dataset: { column: c, label: column.label } }, label, menu, edge);

@@ -1,6 +1,7 @@
 // Find a text in the rows of the view.
 
 import { el } from "./elements.mjs";
+import { icon } from "./icons.mjs";
 import { t, tn } from "./texts.mjs";
 
 const WAIT_MS = 120;
@@ -14,9 +15,9 @@ export class FindBar {
     Object.assign(this, { grid, focus });
     this.input = el("input", { type: "search", "aria-label": t("Find"), placeholder: t("Find") });
     this.count = el("span", { class: "grid-find-count", role: "status" });
-    const button = (text, label, click) => el("button", { type: "button", text, "aria-label": label, title: label, on: { click } });
+    const button = (name, label, click) => el("button", { type: "button", class: "quiet", "aria-label": label, title: label, on: { click } }, icon(name));
     this.node = el("div", { class: "grid-find", role: "search", hidden: true }, this.input, this.count,
-      button("▲", t("Previous"), () => this.step(-1)), button("▼", t("Next"), () => this.step(1)), button("×", t("Close"), () => this.close()));
+      button("up", t("Previous"), () => this.step(-1)), button("down", t("Next"), () => this.step(1)), button("close", t("Close"), () => this.close()));
     this.input.addEventListener("input", () => {
       clearTimeout(this.#timer);
       this.#timer = setTimeout(() => this.#search(), WAIT_MS);

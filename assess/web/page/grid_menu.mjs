@@ -32,7 +32,7 @@ export class ColumnMenu {
       button(t("Sort descending"), () => this.#sort(column, true)),
       button(t("Fit the width to the texts"), () => (this.close(), this.grid.fitWidth(c))),
       contains,
-      el("div", { class: "grid-menu-ticks" }, button(t("All"), tick(true), "plain"), button(t("None"), tick(false), "plain")),
+      el("div", { class: "grid-menu-ticks" }, button(t("All"), tick(true), "quiet"), button(t("None"), tick(false), "quiet")),
       el("div", { class: "grid-menu-values", role: "group", "aria-label": t("Rows with these values") }, values,
         texts.length > MOST_VALUES ? el("p", { text: t("More than {n} values: use the text above.", { n: MOST_VALUES }) }) : null),
       el("div", { class: "grid-menu-end" }, button(t("Filter"), apply, "primary"), button(t("Clear the filter"), () => this.#clear(column))),

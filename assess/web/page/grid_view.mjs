@@ -218,8 +218,8 @@ class GridView {
       this.editor.focus();
     };
     clear(this.order).append(el("span", { role: "status", text }), " ",
-      el("button", { type: "button", class: "plain", text: t("Sort and filter again"), on: { click: () => this.#reorder() } }), " ",
-      el("button", { type: "button", class: "plain", text: t("Show all"), on: { click: all } }));
+      el("button", { type: "button", class: "quiet", text: t("Sort and filter again"), on: { click: () => this.#reorder() } }), " ",
+      el("button", { type: "button", class: "quiet", text: t("Show all"), on: { click: all } }));
   }
 
   // ---- selection

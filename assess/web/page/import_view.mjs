@@ -141,7 +141,7 @@ function body(group) {
   const rest = group.types.slice(FIRST);
   const all = () => (more.replaceWith(...rest.map(row)), node.querySelector("th").focus());
   const label = tn("Show {n:,} more type", "Show {n:,} more types", rest.length);
-  const more = el("tr", null, el("td", { colSpan: 2 }, el("button", { type: "button", class: "plain link", text: label, on: { click: all } })));
+  const more = el("tr", null, el("td", { colSpan: 2 }, el("button", { type: "button", class: "quiet link", text: label, on: { click: all } })));
   if (rest.length) node.append(more);
   if (group.more) node.append(el("tr", null, el("td", { colSpan: 2, text: tn("{n:,} more type", "{n:,} more types", group.more) })));
   return node;

@@ -1,6 +1,7 @@
 // Notices at the edge of the page, and questions that wait for an answer.
 
 import { clear, el } from "./elements.mjs";
+import { icon } from "./icons.mjs";
 import { t } from "./texts.mjs";
 
 const SHOWN_MS = 8000;
@@ -26,7 +27,7 @@ export function notice(text, { kind = "info", actions = [], key = text, lasting 
   const node = el("div", { class: `notice notice-${kind}`, role: kind === "error" ? "alert" : "status" });
   const one = { until, close: () => (clearTimeout(one.timer), node.remove(), shown.get(key) === one && shown.delete(key)) };
   const buttons = actions.map(([label, run]) => el("button", { type: "button", text: label, on: { click: () => (one.close(), run()) } }));
-  const close = el("button", { type: "button", class: "plain close", "aria-label": t("Close"), text: "×", on: { click: one.close } });
+  const close = el("button", { type: "button", class: "quiet close", "aria-label": t("Close"), on: { click: one.close } }, icon("close"));
   node.append(el("p", { text }), ...buttons, close);
   place().append(node);
   shown.set(key, one);

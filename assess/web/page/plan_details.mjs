@@ -71,7 +71,7 @@ export class Details {
     const column = this.store.sheet("Items").column(name);
     if (!column) return null;
     const text = t("Fill in {size}: how far it reaches is not known.", { size: column.label });
-    return el("p", { class: "warning-text" }, this.canEdit() ? this.#button(text, () => this.#reveal("Items", row, column), { class: "plain to-cell" }) : text);
+    return el("p", { class: "warning-text" }, this.canEdit() ? this.#button(text, () => this.#reveal("Items", row, column), { class: "quiet to-cell" }) : text);
   }
 
   #several(rows) {

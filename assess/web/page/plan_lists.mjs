@@ -45,7 +45,7 @@ export class PieceLists {
   #row(piece) {
     const { chance, isAnchored, word } = this.scene.pieces.classOf(piece);
     const isSelected = this.scene.pieces.selected.has(piece.row);
-    return el("li", null, el("button", { type: "button", class: "plain row", "aria-pressed": String(isSelected), dataset: { row: piece.row }, on: { click: () => this.goTo("Items", piece.row, [piece.x, piece.y]) } },
+    return el("li", null, el("button", { type: "button", class: "quiet row", "aria-pressed": String(isSelected), dataset: { row: piece.row }, on: { click: () => this.goTo("Items", piece.row, [piece.x, piece.y]) } },
       el("b", { text: piece.item }), el("span", { text: piece.description }), el("span", { class: "end", text: chance === null ? (isAnchored ? `⚓ ${word}` : word) : percent(chance) })));
   }
 
@@ -59,7 +59,7 @@ export class PieceLists {
 
   #unplacedRow(one) {
     const place = (at) => this.edits.place(one.row, at);
-    const button = el("button", { type: "button", class: "plain row draggable", disabled: !this.canEdit(), dataset: { row: one.row } }, el("b", { text: one.item }), el("span", { text: one.description }));
+    const button = el("button", { type: "button", class: "quiet row draggable", disabled: !this.canEdit(), dataset: { row: one.row } }, el("b", { text: one.item }), el("span", { text: one.description }));
     if (this.canEdit()) this.startDrag(button, () => this.#sizeOf(one.row), place);
     return el("li", null, button);
   }
@@ -92,7 +92,7 @@ export class TypeList {
   #row(one) {
     const { unit, factor } = this.model.unit;
     const sizes = [one.breadth, one.width, one.height].map((size) => (size ? shownLength(size, { unit: "", factor }).trim() : "?")).join(" × ");
-    const button = el("button", { type: "button", class: "plain row draggable", dataset: { type: one.type } }, el("b", { text: one.type }), el("span", { class: "end", text: `${sizes} ${unit}` }));
+    const button = el("button", { type: "button", class: "quiet row draggable", dataset: { type: one.type } }, el("b", { text: one.type }), el("span", { class: "end", text: `${sizes} ${unit}` }));
     const breadth = one.breadth ?? 0.4;
     this.startDrag(button, () => ({ breadth, width: one.width ?? breadth, angle: 0 }), (at) => this.edits.add(one.type, at));
     return el("li", null, button);
@@ -130,7 +130,7 @@ export class RouteLists {
   /** All places and segments of the floor, so that each can be reached by keys. */
   #drawn() {
     const { places, segments } = this.model;
-    const row = (name, about, run) => el("li", null, el("button", { type: "button", class: "plain row", on: { click: run } }, el("b", { text: name }), el("span", { class: "end", text: about })));
+    const row = (name, about, run) => el("li", null, el("button", { type: "button", class: "quiet row", on: { click: run } }, el("b", { text: name }), el("span", { class: "end", text: about })));
     const rows = [
       ...[...places.values()].map((one) => row(one.place, this.model.text("Places", one.row, "kind"), () => this.goTo("Places", one.row))),
       ...[...segments.values()].map((one) => row(`${one.route}, ${one.segment}`, `${one.from} – ${one.to}`, () => this.goTo("Routes", one.row))),
@@ -164,7 +164,7 @@ export class RouteLists {
 
   #row(name, state, run, isHere) {
     const css = `state-${state.standing ? "standing" : state.state.replace("_", "-")}`;
-    return el("li", null, el("button", { type: "button", class: `plain row ${css}`, disabled: !isHere, title: state.detail, on: { click: run } },
+    return el("li", null, el("button", { type: "button", class: `quiet row ${css}`, disabled: !isHere, title: state.detail, on: { click: run } },
       el("span", { class: "state-word", text: state.word }), el("b", { text: name }), el("span", { class: "detail", text: state.detail })));
   }
 

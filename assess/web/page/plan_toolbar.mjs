@@ -1,29 +1,11 @@
 // The tools above the plan: floor, tools, snapping, what is shown, zoom, help.
 
 import { choose, clear, el } from "./elements.mjs";
+import { icon } from "./icons.mjs";
 import { t } from "./texts.mjs";
 
 const BUTTONS_UP_TO = 6; // floors; beyond that a list
 const KINDS = 5;
-
-const icon = (path) => {
-  const NS = "http://www.w3.org/2000/svg";
-  const node = document.createElementNS(NS, "svg");
-  node.setAttribute("viewBox", "0 0 20 20");
-  node.setAttribute("class", "icon");
-  node.setAttribute("aria-hidden", "true");
-  const line = document.createElementNS(NS, "path");
-  line.setAttribute("d", path);
-  node.append(line);
-  return node;
-};
-
-const ICONS = {
-  select: "M5 3L15 11L10.5 11.6L13 17L11 18L8.5 12.5L5 15.5Z",
-  measure: "M3 13L13 3L17 7L7 17ZM6.5 9.5L8.5 11.5M9.5 6.5L11 8",
-  place: "M4 16V4H16V10H11V16Z",
-  segment: "M3 15H9L9 5H15M12.5 2.5L15.5 5L12.5 7.5",
-};
 
 export class Toolbar {
   /** @param {{model, store, scene, viewport, select, tools, currentTool, canEdit, setTool, setFloor, fit, help}} parts */
@@ -37,7 +19,7 @@ export class Toolbar {
   }
 
   #buildTools() {
-    const tool = (name, label, key) => el("button", { type: "button", class: "tool", title: `${label} (${key})`, "aria-label": label, dataset: { tool: name }, on: { click: () => this.setTool(name) } }, icon(ICONS[name]), el("span", { text: label }));
+    const tool = (name, label, key) => el("button", { type: "button", class: "tool", title: `${label} (${key})`, "aria-label": label, dataset: { tool: name }, on: { click: () => this.setTool(name) } }, icon(name === "place" ? "room" : name === "segment" ? "way" : name), el("span", { text: label }));
     this.toolGroup = el("div", { class: "plan-group tools editing-only", role: "group", "aria-label": t("Tools") },
       tool("select", t("Select"), "V"), tool("measure", t("Measure"), "M"), tool("place", t("Place"), "P"), tool("segment", t("Segment"), "S"));
     this.options = el("div", { class: "plan-group options editing-only" });
@@ -81,10 +63,10 @@ export class Toolbar {
   }
 
   #buildView() {
-    const button = (text, label, run, key) => el("button", { type: "button", class: "square", text, "aria-label": label, title: key ? `${label} (${key})` : label, on: { click: run } });
+    const button = (name, label, run, key) => el("button", { type: "button", class: "square", "aria-label": label, title: key ? `${label} (${key})` : label, on: { click: run } }, icon(name));
     this.view = el("div", { class: "plan-view-tools", role: "group", "aria-label": t("View") },
-      button("−", t("Zoom out"), () => this.viewport.zoom(0.8), "-"), button("+", t("Zoom in"), () => this.viewport.zoom(1.25), "+"), button("⤢", t("Show all"), () => this.fit(), "0"),
-      el("button", { type: "button", class: "square editing-only", text: "?", "aria-label": t("Keys of the plan"), title: t("Keys of the plan"), on: { click: () => this.help() } }));
+      button("minus", t("Zoom out"), () => this.viewport.zoom(0.8), "-"), button("plus", t("Zoom in"), () => this.viewport.zoom(1.25), "+"), button("fit", t("Show all"), () => this.fit(), "0"),
+      el("button", { type: "button", class: "square editing-only", "aria-label": t("Keys of the plan"), title: t("Keys of the plan"), on: { click: () => this.help() } }, icon("help")));
   }
 
   // ---- drawing

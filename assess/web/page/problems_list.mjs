@@ -1,6 +1,7 @@
 // The problems of the workbook, each with a way to its cell.
 
 import { clear, el } from "./elements.mjs";
+import { icon } from "./icons.mjs";
 import { cellName } from "./sheet.mjs";
 import { t, tn } from "./texts.mjs";
 
@@ -42,7 +43,7 @@ export class ProblemsList {
     const { problems, liveError } = this.store;
     this.node.hidden = problems.length === 0 && !liveError;
     this.list.hidden = !this.isOpen;
-    const open = el("button", { type: "button", class: "plain", "aria-expanded": String(this.isOpen), text: `${this.isOpen ? "▾" : "▸"} ${t("Problems")}`, on: { click: () => this.#toggleOpen() } });
+    const open = el("button", { type: "button", class: "quiet", "aria-expanded": String(this.isOpen), on: { click: () => this.#toggleOpen() } }, icon(this.isOpen ? "down" : "right"), t("Problems"));
     clear(this.filters).append(open, ...SEVERITIES.map((one) => this.#filter(one)).filter(Boolean));
     const shown = problems.filter((one) => !this.#hidden.has(one.severity));
     shown.sort((one, other) => SEVERITIES.indexOf(one.severity) - SEVERITIES.indexOf(other.severity));

@@ -95,7 +95,7 @@ export class ResultsView {
     const range = one.low !== null && el("span", { class: "range hint", text: t("({low} to {high})", { low: percent(one.low), high: percent(one.high) }) });
     const isHigher = CLASSES.indexOf(one.after) < CLASSES.indexOf(one.before);
     const change = one.isStale ? t("inputs changed") : isHigher ? t("↑ raised") : t("↓ lowered");
-    const link = el("button", { type: "button", class: "plain link", text: name, on: { click: () => this.#reveal(["Items", one.row, at]) } });
+    const link = el("button", { type: "button", class: "quiet link", text: name, on: { click: () => this.#reveal(["Items", one.row, at]) } });
     return el("tr", { class: one.isStale ? "stale" : "" }, el("th", { scope: "row" }, link), el("td", null, badge(one.before)), el("td", null, badge(one.after)),
       el("td", null, percent(one.chance), " ", range), el("td", { class: "change", text: change }));
   }

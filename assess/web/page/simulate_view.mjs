@@ -118,7 +118,7 @@ class SimulateView {
     const cell = placeOf(one);
     const sheet = this.#store.sheet(one.sheet);
     const name = one.cell ? `${sheet?.title ?? one.sheet}!${one.cell}` : (sheet?.title ?? one.sheet);
-    const link = cell ? el("button", { type: "button", class: "plain link", text: name, on: { click: () => this.#reveal(cell) } }) : el("b", { text: name });
+    const link = cell ? el("button", { type: "button", class: "quiet link", text: name, on: { click: () => this.#reveal(cell) } }) : el("b", { text: name });
     return el("li", { class: one.severity }, el("span", { class: "problems-sign", "aria-hidden": "true", text: SIGNS[one.severity] ?? "" }), link, ` ${[one.message, one.fix].filter(Boolean).join(" ")}`);
   }
 

@@ -100,7 +100,7 @@ export class StartForm {
 
   #stepLink(label, at) {
     const current = at === this.#step ? "step" : null;
-    return el("li", null, el("button", { type: "button", class: "plain", "aria-current": current, text: label, on: { click: () => this.#go(at) } }));
+    return el("li", null, el("button", { type: "button", class: "quiet", "aria-current": current, text: label, on: { click: () => this.#go(at) } }));
   }
 
   #go(step) {

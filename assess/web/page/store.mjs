@@ -1,7 +1,7 @@
 // The page's copy of the workbook. Edits show at once and reach the server one after the other; classes, live values and
 // problems come from the server after each change.
 
-import { connection, get, post } from "./api.mjs";
+import { ApiError, connection, get, post } from "./api.mjs";
 import { KeptEdits, key, same } from "./kept_edits.mjs";
 import { endNotices, notice } from "./messages.mjs";
 import { Sheet, cellName } from "./sheet.mjs";
@@ -46,13 +46,9 @@ class Store extends EventTarget {
 
   /** Read the book from the server; null where none is open. */
   async load() {
-    try {
-      this.replaceBook(await get("/api/book"));
-    } catch (error) {
-      if (error.status !== 404) throw error;
-      this.start = error.body ?? {};
-      this.replaceBook(null);
-    }
+    const found = await get("/api/book");
+    if (found.start) this.start = found;
+    this.replaceBook(found.start ? null : found);
     return this.book;
   }
 
@@ -275,6 +271,7 @@ class Store extends EventTarget {
    */
   async #reread(canSend = () => true) {
     const book = await get("/api/book");
+    if (book.start) throw new ApiError(404, { message: t("No workbook is open.") });
     const { book: oldBook, state: old } = this;
     const kept = this.#kept;
     const waiting = this.#queue;
