@@ -170,18 +170,29 @@ class FloorTarget:
     is_ground_known: bool = True
 
 
-_NUMBERED = re.compile(r"(?:floor|level|storey|story|piano|livello|[lfp])?[ .]*(\d{1,3})(?:°|st|nd|rd|th)?(?: floor)?")
+_NUMBERED = re.compile(
+    r"(?:floor|level|storey|story|piano|livello|[lfp])?[ .]*(\d{1,3})(?:°|º|st|nd|rd|th)?"
+    r"(?: (?:floor|level|storey|story|piano|livello))?"
+)
 _BELOW = re.compile(r"(?:b|-)[ .]*\d{1,2}|(?:basement|interrato)[ .]*\d{0,2}")
 _GROUND = frozenset({"g", "gf", "ground", "ground floor", "pt", "p.t.", "terra", "piano terra", "eg", "rdc"})
 
 
 def find_storey(name: str) -> int | None:
     """Return the number of storeys that a floor lies above the ground floor, from its name; None where it has none."""
+    return 0 if is_below_ground(name) else find_number(name)
+
+
+def is_below_ground(name: str) -> bool:
+    """Tell whether a floor is called as one below the ground: B1, Basement, -1."""
+    return bool(_BELOW.fullmatch(" ".join(name.split()).casefold()))
+
+
+def find_number(name: str) -> int | None:
+    """Return the number that a floor is called by, 0 for the ground floor; None for any other name."""
     plain = " ".join(name.split()).casefold()
-    if plain in _GROUND or _BELOW.fullmatch(plain):
-        return 0
     found = _NUMBERED.fullmatch(plain)
-    return int(found[1]) if found else None
+    return 0 if plain in _GROUND else int(found[1]) if found else None
 
 
 def find_lowest_number(floors: Iterable[tuple[str, float | None]]) -> int | None:

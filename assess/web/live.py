@@ -22,6 +22,7 @@ from assess.pipeline.adopt import Assessment
 from assess.risk import RiskClass, classify_all
 from assess.units import GRAVITY, LENGTH, VELOCITY
 from assess.web.evaluation import Evaluation, evaluate, list_floors
+from assess.web.fixes import Fixes
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.habits import list_groups
 from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
@@ -129,7 +130,7 @@ def _describe_state(snapshot: "Snapshot") -> _State:
             found = Evaluation(None, frozenset(key(one.floor) for one in inventory.floors), ())
             fault = gettext(error.message)
         rows = list_rows(snapshot.tables, inventory, found, columns.values())
-        problems = describe_problems((*snapshot.problems, *found.problems), inventory.sheets)
+        problems = describe_problems((*snapshot.problems, *found.problems), inventory.sheets, Fixes(snapshot))
         demands, floors = {} if found.assessment is None else found.assessment.demands, []
         for row in list_floors(snapshot.tables):
             peaks = {axis: [one.pfa for one in demands.get((row.get("floor"), axis), ())] for axis in AXES}
@@ -258,9 +259,11 @@ def _list_columns(assessment: Assessment, classes: Sequence[str]) -> dict[str, S
     }
 
 
-def describe_problems(problems: Iterable[Problem], sheets: Mapping[str, str]) -> list[dict[str, Any]]:
+def describe_problems(
+    problems: Iterable[Problem], sheets: Mapping[str, str], fixes: Fixes | None = None
+) -> list[dict[str, Any]]:
     """Return problems as `GET /api/live` answers them, the errors first; `sheets` are own names by English ones."""
-    english, described = {own: name for name, own in sheets.items()}, []
+    english, described = {own: name for name, own in sheets.items()}, list[dict[str, Any]]()
     for shown, alike in list_groups(dict.fromkeys(problems)):
         sheet = english.get(shown.sheet) or (find_sheet(shown.sheet) or (shown.sheet,))[0]
         found = [(cell, one) for one in alike for cell in _list_cells(sheet, one.cell)]
@@ -271,6 +274,7 @@ def describe_problems(problems: Iterable[Problem], sheets: Mapping[str, str]) ->
             "cells": [cell for cell, _ in found],
             "own": [(gettext(one.message), gettext(one.fix)) for _, one in found] if len(alike) > 1 else [],
             "lacks": shown.lacks if isinstance(shown, Gap) else "",
+            "actions": fixes.find(sheet, found) if fixes and found and len(described) < MOST_PROBLEMS else [],
         })  # fmt: skip
     return sorted(described, key=lambda one: _SEVERITIES.index(one["severity"]))
 

@@ -141,15 +141,19 @@ def _read_choice(column: Column, value: object, unit: str) -> str:
     text = read_text(value)
     if (choice := find_choice(text, column.choices)) is not None:
         return choice
-    own = translate_choices(column.choices, column.language)
-    words = {plain(word): word for word in (*column.choices, *own)}
-    near = find_near(plain(text), words)
+    own, near = translate_choices(column.choices, column.language), find_near_choice(column, text)
     mark = "; " if any("," in one for one in own) else ", "
     raise CellError(
         fill("{label} is {text}, expected one of: {choices}.",
              label=column.label, text=shorten(text), choices=mark.join(own)),
-        fill("Did you mean {name}?", name=words[near]) if near else fill("Choose from the list."),
+        fill("Did you mean {name}?", name=near) if near else fill("Choose from the list."),
     )  # fmt: skip
+
+
+def find_near_choice(column: Column, text: str) -> str | None:
+    """Return the choice that a text is likely a slip of, in English or the column's language; None if none is near."""
+    words = {plain(word): word for word in (*column.choices, *translate_choices(column.choices, column.language))}
+    return words.get(find_near(plain(text), words) or "")
 
 
 def _read_language(column: Column, value: object, unit: str) -> str:
@@ -369,24 +373,34 @@ def find_slip(column: Column, number: float, unit: str) -> Text | str:
         and is_within(column, number / 100, unit)
     ):
         return fill("Did you mean {number:g}?", number=number / 100)
+    readings = [
+        fill(
+            "{number:.10g} {other} = {converted:.4g} {unit}", number=number, other=other, converted=converted, unit=unit
+        )
+        for other, converted in list_readings(column, number, unit)
+    ]
+    if len(readings) > 1:
+        return fill("Did you mean {one}, or {other}?", one=readings[0], other=readings[1])
+    if readings:
+        return fill("Did you mean {name}?", name=readings[0])
+    return fill("Check the number and the unit in the header.")
+
+
+def list_readings(column: Column, number: float, unit: str) -> list[tuple[str, float]]:
+    """Return the units in which a number outside the range would be usual, and what it is then in the header's unit."""
     systems: tuple[tuple[str, ...], ...] = (_IMPERIAL, _METRIC) if unit in _IMPERIAL else (_METRIC, _IMPERIAL)
     if column.quantity == "acceleration":
         systems = (_ACCELERATIONS,)
     known = {*QUANTITIES.get(column.quantity, {}), _PERCENT_OF_G} - {unit}
     for system in systems:
         readings = [
-            fill(
-                "{number:.10g} {other} = {converted:.4g} {unit}",
-                number=number, other=other, converted=number * _scale(column, other) / _scale(column, unit), unit=unit,
-            )
+            (other, number * _scale(column, other) / _scale(column, unit))
             for other in system
             if other in known and is_within(column, number, other) and not is_unusual(column, number, other)
-        ]  # fmt: skip
-        if len(readings) > 1:
-            return fill("Did you mean {one}, or {other}?", one=readings[0], other=readings[1])
+        ]
         if readings:
-            return fill("Did you mean {name}?", name=readings[0])
-    return fill("Check the number and the unit in the header.")
+            return readings
+    return []
 
 
 # ---------------------------------------------------------------- numbers

@@ -6,7 +6,7 @@ NAMES = {
     "0": 0, "G": 0, "Ground floor": 0, " pt ": 0, "Piano terra": 0, "B1": 0, "b 2": 0, "-2": 0, "Basement": 0,
     "basement 2": 0,
     "1": 1, "03": 3, "L11": 11, "Floor 2": 2, "level  7": 7, "Piano 4": 4, "2nd floor": 2, "3rd": 3,
-    "1\N{DEGREE SIGN}": 1,
+    "1\N{DEGREE SIGN}": 1, "3\N{DEGREE SIGN} piano": 3, "4th storey": 4,
 }  # fmt: skip
 UNNUMBERED = ["Roof", "Mezzanine", "25A", "Block 3 floor 10", "A", "", "2/3", "Wing 2", "B", "b.", "-", "- "]
 

@@ -1,6 +1,7 @@
 // The tab of the sheets: one grid or form, its tools and the problems.
 
 import { clear, el } from "./elements.mjs";
+import { fixButtons } from "./fixes.mjs";
 import { isComputed, problemText } from "./grid_cells.mjs";
 import { Actions } from "./grid_actions.mjs";
 import { Editor } from "./grid_editor.mjs";
@@ -250,7 +251,8 @@ class GridView {
     const problem = this.store.problemAt(this.sheet.name, active.row, active.column.at);
     this.where.textContent = active.name;
     this.about.className = `sheet-about ${problem?.severity ?? ""}`;
-    this.about.textContent = problem ? problemText(problem) : [active.column.label, active.column.help].filter(Boolean).join(": ");
+    this.about.textContent = problem ? `${problemText(problem)} ` : [active.column.label, active.column.help].filter(Boolean).join(": ");
+    this.about.append(...fixButtons(this.store, problem));
   }
 
   /** Tell something to those who hear the page. */

@@ -2,6 +2,7 @@
 
 import { badge } from "./classes.mjs";
 import { clear, el } from "./elements.mjs";
+import { fixButtons } from "./fixes.mjs";
 import { ask } from "./messages.mjs";
 import { shownLength } from "./plan_pieces.mjs";
 import { isFilled } from "./sheet.mjs";
@@ -156,7 +157,7 @@ export class Details {
     input.title = problem ? problem.message : column.help;
     if (problem?.severity === "error") input.setAttribute("aria-invalid", "true");
     const isWide = WIDE.has(column.field);
-    return el("label", { class: isWide ? "field wide" : "field" }, el("span", { class: "field-name", text: label }), input, problem && el("span", { class: problem.severity === "error" ? "error-text hint" : "warning-text hint", text: problem.message }));
+    return el("label", { class: isWide ? "field wide" : "field" }, el("span", { class: "field-name", text: label }), input, problem && el("span", { class: problem.severity === "error" ? "error-text hint" : "warning-text hint", text: problem.message }), problem && fixButtons(this.store, problem));
   }
 
   #choices(column, value) {

@@ -1,6 +1,7 @@
 // The problems of the workbook, each with a way to its cell.
 
 import { clear, el } from "./elements.mjs";
+import { fixButtons } from "./fixes.mjs";
 import { icon } from "./icons.mjs";
 import { cellName } from "./sheet.mjs";
 import { t, tn } from "./texts.mjs";
@@ -70,6 +71,6 @@ export class ProblemsList {
     const where = isCell ? cellName(this.store.sheet(sheet), row, at) : [this.store.sheet(sheet)?.title ?? sheet, cell].filter(Boolean).join(" ");
     const text = [el("span", { class: "problems-sign", "aria-hidden": "true", text: SIGNS[severity] }), el("b", { text: where }), ` ${message} `, fix ? el("span", { class: "problems-fix", text: fix }) : null];
     const line = isCell || row ? el("button", { type: "button", on: { click: () => this.store.reveal([sheet, row, at ?? 0]) } }, text) : el("p", null, text);
-    return el("li", { class: severity }, line);
+    return el("li", { class: severity }, line, fixButtons(this.store, problem));
   }
 }
