@@ -30,6 +30,13 @@ def show(page, view):
     expect(page.locator(f"#view-{view} [aria-busy=true]")).to_have_count(0)
 
 
+def open_menu(page):
+    """Open the menu of the header, which holds what is not always needed."""
+    page.get_by_role("button", name="Menu").click()
+    expect(page.locator("#menu")).to_be_visible()
+    return page
+
+
 def examine(page, rules=()):
     """Return what axe-core is sure of that is grave: rule, impact and the first element of each; of `rules` alone."""
     if not page.evaluate("() => 'axe' in window"):

@@ -15,7 +15,7 @@ from playwright.sync_api import expect
 import assess.web
 from assess.web.assets import find_asset
 from tests.conftest import EXAMPLE
-from tests.web.looking import THEMES, VIEWS, examine, note_requests, show
+from tests.web.looking import THEMES, VIEWS, examine, note_requests, open_menu, show
 from tests.web.opened import write_office
 from tests.web.serving import start
 
@@ -75,7 +75,7 @@ def test_the_page_is_small_and_complete_names_no_other_server_and_makes_no_eleme
     fonts = re.findall(r'"/(fonts/[\w.-]+)\?v=(\w+)"', styles + (PAGE / "index.html").read_text("utf-8"))
     assert len(fonts) == 4
     assert all(find_asset(name).mark.startswith(version) for name, version in fonts)
-    icons = re.findall(r"^  (\w+): \"M", (PAGE / "icons.mjs").read_text("utf-8"), re.MULTILINE)
+    icons = re.findall(r'^  "?([\w-]+)"?: "M', (PAGE / "icons.mjs").read_text("utf-8"), re.MULTILINE)
     used = re.findall(r'\bicon\("(\w+)"', "".join(path.read_text("utf-8") for path in PAGE.glob("*.mjs")))
     assert len(icons) == len(set(icons))
     assert set(used) <= set(icons)
@@ -97,6 +97,61 @@ def test_every_view_is_accessible_and_asks_no_other_server(page, served_here, ex
     assert [one for one in addresses if not one.startswith((server.base + "/", "data:", "blob:"))] == []
 
 
+CONTENT = {"sheet": ".sheet-panel", "plan": ".plan-main", "what-if": ".what-if-main", "simulate": ".page-like"}
+"""What begins below the header and the tools of a view."""
+CUT_OFF = """() => [...document.querySelectorAll("header, header *, [role=toolbar], .sheet-bar, .what-if-banner")]
+    .filter((one) => one.checkVisibility() && !one.closest("#menu, .book-name, .unseen"))
+    .filter((one) => one.scrollWidth > one.clientWidth + 1 && getComputedStyle(one).display !== "inline")
+    .map((one) => one.outerHTML.slice(0, 90))"""
+"""What the header and the tools have no room for; the name and the state of the workbook end with an ellipsis."""
+BOXES = """() => [...document.querySelectorAll("header, header > *, header a, header button, main, main > * > *")]
+    .filter((one) => one.checkVisibility()).map((one) => JSON.stringify(one.getBoundingClientRect()))"""
+TROUBLE = """async () => {
+    const { store } = await import("/store.mjs");
+    store.takeState({ ...store.state, unsaved: true, save_error: "The disk is full. ".repeat(30) });
+    document.querySelector(".undone").textContent = "Undone: Items!A2";
+}"""
+
+
+@browsing
+def test_the_frame_is_one_line_the_tools_another_and_nothing_moves_when_it_tells_something(page, served_here, example):
+    found = page(served_here(example))
+    expect(found.locator(".counts")).to_contain_text("very high")
+    for width in (1400, 900):
+        found.set_viewport_size({"width": width, "height": 900})
+        for view, content in CONTENT.items():
+            show(found, view)
+            assert found.locator(f"#view-{view} {content}").first.bounding_box()["y"] <= 96, (view, width)
+            assert found.evaluate(CUT_OFF) == [], (view, width)
+            assert found.locator(".primary:visible").count() <= 1, (view, width)
+    show(found, "start")
+    assert found.locator(".primary:visible").count() <= 1
+    for width, view in ((1400, "sheet"), (900, "plan"), (390, "sheet")):
+        found.set_viewport_size({"width": width, "height": 900})
+        show(found, view)
+        expect(found.locator(STATE)).to_have_text("All changes saved")
+        before = found.evaluate(BOXES)
+        found.evaluate(TROUBLE)
+        assert found.locator(STATE).inner_text().startswith("Not saved: The disk is full.")
+        assert found.evaluate(BOXES) == before, width
+        assert found.locator("header.top").bounding_box()["height"] <= 48
+        found.evaluate("() => { document.querySelector('.undone').textContent = ''; }")
+        expect(found.locator(STATE)).to_have_text("All changes saved")  # as the server has it
+
+
+@browsing
+def test_a_reload_asks_for_the_files_and_gets_none_of_them_again(page, served_here, office):
+    found = page(served_here(office))
+    expect(found.get_by_role("grid")).to_be_visible()
+    assert found.evaluate("() => document.fonts.ready.then(() => document.fonts.check('16px Plex'))")
+    found.reload()
+    expect(found.get_by_role("grid")).to_be_visible()
+    sent = found.evaluate("""() => performance.getEntriesByType("resource")
+        .filter((one) => /\\.(mjs|css|woff2)/.test(one.name)).map((one) => [one.name, one.transferSize])""")
+    assert len(sent) > 30
+    assert [(name, size) for name, size in sent if size > 500] == []
+
+
 @browsing
 def test_language_and_colours_are_kept_and_percentages_stay_on_their_side_of_a_limit(page, served_here, office):
     server = served_here(office)
@@ -104,14 +159,14 @@ def test_language_and_colours_are_kept_and_percentages_stay_on_their_side_of_a_l
     expect(found.get_by_role("link", name="Sheet", exact=True)).to_be_visible()
     colour = "() => getComputedStyle(document.body).backgroundColor"
     light = found.evaluate(colour)
-    found.get_by_label("Colours").select_option("dark")
+    open_menu(found).get_by_label("Colours").select_option("dark")
     dark = found.evaluate(colour)
     percents = "async chances => { const { percent } = await import('/texts.mjs'); return chances.map(percent); }"
     shown = [one.replace("\u00a0", " ") for one in found.evaluate(percents, [0.02999, 0.03, 0.69996, None, 1, 0])]
     assert shown == ["2.999 %", "3.0 %", "69.996 %", "–", "100.0 %", "0.0 %"]
     found.get_by_label("Language of the page").select_option("it")
     expect(found.get_by_role("link", name="Foglio", exact=True)).to_be_visible()
-    expect(found.locator(STATE)).to_have_text("Tutte le modifiche sono salvate in office.xlsx")
+    expect(found.locator(STATE)).to_have_text("Tutte le modifiche sono salvate")
     assert found.locator("html").get_attribute("lang") == "it"
     numbers = found.evaluate("""async () => {
         const { number, percent, t } = await import("/texts.mjs");
@@ -122,8 +177,9 @@ def test_language_and_colours_are_kept_and_percentages_stay_on_their_side_of_a_l
     expect(found.get_by_role("link", name="Foglio", exact=True)).to_be_visible()
     assert found.evaluate(colour) == dark != light
     assert server.client.get("/api/book").json()["language"] == "en"
+    open_menu(found)
     found.get_by_label("Lingua della pagina").select_option("en")
-    expect(found.get_by_label("Colours")).to_have_value("dark")
+    expect(open_menu(found).get_by_label("Colours")).to_have_value("dark")
 
 
 @browsing
@@ -141,7 +197,7 @@ def test_what_is_changed_while_the_server_is_gone_reaches_the_file(page, served,
     again = start(office, "--no-browser", "--port", port, cwd=office.parent)
     try:
         found.context.new_page().goto(again.url)
-        expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
+        expect(found.locator(STATE)).to_have_text("All changes saved")
         expect(found.locator("#notices")).not_to_contain_text(re.compile("answer|connected|sent"))
     finally:
         again.stop()
@@ -160,7 +216,7 @@ def test_an_answer_that_breaks_off_loses_no_edit(page, served_here, office):
     found.route("**/api/edit", break_off, times=1)
     edit(found, "Items", 2, 3, "Attic")
     edit(found, "Items", 3, 3, "Cellar")
-    expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
+    expect(found.locator(STATE)).to_have_text("All changes saved")
     expect(found.locator("#notices")).not_to_contain_text(re.compile("not been sent|Not changed"))
     assert [load_workbook(office)["Items"].cell(row, 4).value for row in (2, 3)] == ["Attic", "Cellar"]
 
@@ -189,7 +245,7 @@ def test_what_a_killed_server_had_taken_and_not_saved_is_sent_again(page, served
         found.context.new_page().goto(again.url)
         expect(found.locator("#notices")).to_contain_text("1 change that it had not saved was sent again")
         expect(found.locator("#notices")).not_to_contain_text("another window")
-        expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
+        expect(found.locator(STATE)).to_have_text("All changes saved")
     finally:
         again.stop()
     assert [load_workbook(office)["Items"].cell(row, 4).value for row in (2, 3)] == ["Attic", "Cellar"]
@@ -240,7 +296,7 @@ def test_what_stands_in_the_way_of_saving_is_told_until_it_is_gone(page, served_
     expect(said.get_by_role("button", name="Download my version")).to_be_visible()
     office.with_name("moved.xlsx").rename(office)
     expect(said).to_have_count(0)
-    expect(found.locator(STATE)).to_have_text("All changes saved in office.xlsx")
+    expect(found.locator(STATE)).to_have_text("All changes saved")
     assert load_workbook(office)["Items"].cell(2, 4).value == "Attic"
 
 

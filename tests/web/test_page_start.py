@@ -7,7 +7,7 @@ from openpyxl import load_workbook
 from playwright.sync_api import expect
 
 from tests.conftest import EXAMPLE
-from tests.web.looking import examine
+from tests.web.looking import examine, open_menu
 from tests.web.sheet_page import CLASS, SheetPage
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -27,14 +27,14 @@ def test_the_worked_example_with_one_click_and_steps_that_are_skipped(started):
     expect(page.get_by_role("heading", name=EXAMPLE.name)).to_be_visible()
     expect(SheetPage(page, server).cell(CLASS, 5)).to_contain_text("high")
     expect(page.get_by_role("button", name=re.compile("missing"))).to_be_hidden()
-    page.get_by_role("link", name="New or open").click()
+    open_menu(page).get_by_role("link", name="New or open").click()
     page.get_by_role("button", name="Open the worked example").click()
     expect(page.get_by_role("heading", name="market-street-2.xlsx")).to_be_visible()
     assert (server.folder / EXAMPLE.name).read_bytes() == EXAMPLE.read_bytes()
-    page.get_by_role("link", name="New or open").click()
+    open_menu(page).get_by_role("link", name="New or open").click()
     page.get_by_role("button", name="Skip the rest and make it").click()
     expect(page.get_by_role("heading", name="office.xlsx")).to_be_visible()
-    page.get_by_role("link", name="New or open").click()
+    open_menu(page).get_by_role("link", name="New or open").click()
     page.get_by_role("button", name="Blank workbook").click()
     expect(page.locator(".steps [role=alert]")).to_contain_text("office.xlsx exists already.")
     page.get_by_label("Name of the file").fill("blank")

@@ -1,7 +1,8 @@
 // The frame of the page: header, tabs, what they show.
 
 import { countBadges } from "./classes.mjs";
-import { choose, clear, el } from "./elements.mjs";
+import { choose, clear, el, labelled } from "./elements.mjs";
+import { icon } from "./icons.mjs";
 import { countSimulated, jobs } from "./job.mjs";
 import { imports } from "./import_job.mjs";
 import { acceptDrops } from "./open_file.mjs";
@@ -19,12 +20,11 @@ const OWN_UNDO = `textarea, [contenteditable], dialog, input:not(${["checkbox", 
 export function saveState(store, isGone = false) {
   const { book, state } = store;
   if (!book) return ["", false];
-  const name = book.name;
   if (isGone) return [t("Not connected: changes are kept in this page"), true];
   if (state.changed_outside && state.unsaved) return [t("Changed by another program, not saved"), true];
   if (state.save_error) return [state.unsaved ? t("Not saved: {why}", { why: state.save_error }) : state.save_error, true];
   if (store.waiting || (book.mode === "disk" && state.unsaved)) return [t("Saving…"), false];
-  if (book.mode === "disk") return [t("All changes saved in {name}", { name }), false];
+  if (book.mode === "disk") return [t("All changes saved"), false];
   return [state.unsaved ? t("Not downloaded yet") : t("No changes since the last download"), false];
 }
 
@@ -38,7 +38,7 @@ class Frame {
     this.tabs = new Tabs(store);
     this.watch = new Watch(store);
     const notices = el("div", { id: "notices", role: "region", "aria-label": t("Notices") });
-    document.body.append(this.#skip(), this.#header(), this.tabs.nav, this.tabs.main, notices);
+    document.body.append(this.#skip(), this.#header(), this.tabs.main, notices);
     store.addEventListener("book", () => this.#showBook());
     store.addEventListener("state", () => this.#showState());
     for (const event of ["live", "simulated"]) store.addEventListener(event, () => this.#showCounts());
@@ -63,26 +63,35 @@ class Frame {
     return el("a", { class: "skip", href: "#view", text: t("Skip to the content"), on: { click: onClick } });
   }
 
+  /** One line, whatever it tells: what is too long is cut off and stands in the title. */
   #header() {
     const p = this.#parts;
     p.name = el("h1", { text: "assess" });
     p.state = el("div", { class: "save-state", role: "status" });
     p.counts = this.#countsLine();
-    const button = (label, sign, run, more = {}) =>
-      el("button", { type: "button", "aria-label": label, title: label, on: { click: run }, ...more }, sign);
-    p.undo = button(t("Undo"), "↶", () => this.#store.undo(), { class: "editing-only" });
-    p.redo = button(t("Redo"), "↷", () => this.#store.redo(), { class: "editing-only" });
-    p.files = button(t("Missing files"), "", () => showFiles(this.#store));
-    p.download = el("a", { class: "button", href: "/api/download", text: t("Download"), download: "" });
+    const button = (label, name, run, more = {}) =>
+      el("button", { type: "button", class: "quiet square", "aria-label": label, title: label, on: { click: run }, ...more }, icon(name));
+    p.undo = button(t("Undo"), "undo", () => this.#store.undo(), { class: "quiet square editing-only" });
+    p.redo = button(t("Redo"), "redo", () => this.#store.redo(), { class: "quiet square editing-only" });
+    p.missing = el("span");
+    p.files = el("button", { type: "button", class: "quiet missing", on: { click: () => showFiles(this.#store) } }, icon("warning"), p.missing);
+    p.download = el("a", { class: "button", href: "/api/download", download: "" }, icon("download"), (p.downloads = el("span")));
     p.download.addEventListener("click", (event) => this.#onDownload(event));
-    p.open = el("a", { class: "button editing-only", href: "#start", text: t("New or open…"), title: t("Make a new workbook, or open another") });
-    p.imported = el("a", { class: "button", href: "#import", text: t("Imported"), title: t("What was imported, and what was skipped"), hidden: true });
-    p.more = button(t("Menu"), "☰", () => this.#toggleMenu(), { class: "more", "aria-expanded": "false", "aria-controls": "menu" });
+    const more = button(t("Menu"), "menu", null, { popovertarget: "menu" });
+    p.tools = el("div", { class: "group" }, p.files, p.undo, p.redo);
     return el("header", { class: "top" },
-      el("div", { class: "book-name" }, p.name, el("div", { class: "save-line" }, p.state, undoneLine(this.#store))), p.more, p.counts,
-      el("div", { id: "menu", class: "menu" },
-        (p.tools = el("div", { class: "group" }, p.undo, p.redo, p.files, p.imported, p.open, p.download)),
-        el("div", { class: "group settings" }, this.#languageSwitch(), themeSwitch())));
+      el("div", { class: "book-name" }, p.name, el("div", { class: "save-line" }, undoneLine(this.#store), p.state)),
+      this.tabs.nav, p.counts, p.tools, more, this.#menu());
+  }
+
+  /** What is not always needed. */
+  #menu() {
+    const p = this.#parts;
+    p.open = el("a", { class: "button editing-only", href: "#start", title: t("Make a new workbook, or open another") }, icon("folder"), t("New or open…"));
+    p.imported = el("a", { class: "button", href: "#import", title: t("What was imported, and what was skipped"), hidden: true }, icon("info"), t("Imported"));
+    p.items = el("div", { class: "items", on: { click: () => p.menu.hidePopover() } }, p.open, p.imported);
+    p.menu = el("div", { id: "menu", popover: "auto" }, p.items, this.#languageSwitch(), labelled(t("Colours"), themeSwitch()));
+    return p.menu;
   }
 
   /** The pieces by class, and by what: by the formula, or by the simulation once there is one. */
@@ -96,24 +105,15 @@ class Frame {
     return el("div", { class: "counts-line" }, p.basis, p.bases, p.badges, p.since);
   }
 
-  /** On a phone what is not always needed is folded away. */
-  #toggleMenu() {
-    const { more } = this.#parts;
-    const isOpen = more.getAttribute("aria-expanded") !== "true";
-    more.setAttribute("aria-expanded", String(isOpen));
-    more.closest("header").classList.toggle("is-open", isOpen);
-  }
-
   #languageSwitch() {
-    const label = t("Language of the page");
-    const select = choose(languages(), language(), { "aria-label": label, title: label });
+    const select = choose(languages(), language());
     select.addEventListener("change", async () => {
       await loadTexts(select.value);
       await whenSent(this.#store);
       this.#isReloading = true; // what waits is sent, and the book is the server's: nothing is lost
       location.reload();
     });
-    return select;
+    return labelled(t("Language of the page"), select);
   }
 
   async #onDownload(event) {
@@ -147,7 +147,10 @@ class Frame {
     this.#parts.name.textContent = book?.name ?? "assess";
     this.#parts.tools.hidden = !book;
     this.#parts.counts.hidden = !book;
-    this.#parts.download.textContent = book?.mode === "disk" ? t("Download a copy") : t("Download");
+    const isHeld = book?.mode === "held"; // then this is how it is saved
+    this.#parts.downloads.textContent = isHeld ? t("Download") : t("Download a copy");
+    (isHeld ? this.#parts.tools : this.#parts.items).append(this.#parts.download);
+    this.#parts.items.hidden = !book;
     this.tabs.update();
   }
 
@@ -165,11 +168,11 @@ class Frame {
     p.state.classList.toggle("bad", isBad);
     p.undo.disabled = !state.can_undo;
     p.redo.disabled = !state.can_redo;
-    p.download.classList.toggle("primary", book?.mode === "held" && state.unsaved);
     const n = book?.missing?.length ?? 0;
     p.files.hidden = n === 0;
-    p.files.textContent = tn("{n} file missing", "{n} files missing", n);
-    p.files.setAttribute("aria-label", p.files.textContent);
+    p.missing.textContent = n;
+    p.files.title = tn("{n} file missing", "{n} files missing", n);
+    p.files.setAttribute("aria-label", p.files.title);
   }
 
   #showCounts() {

@@ -11,6 +11,7 @@ import { Grid } from "./grid.mjs";
 import { Keys } from "./grid_keys.mjs";
 import { ColumnMenu, describeOrder } from "./grid_menu.mjs";
 import { Pointer } from "./grid_pointer.mjs";
+import { icon } from "./icons.mjs";
 import { ProblemsList } from "./problems_list.mjs";
 import { t, tn } from "./texts.mjs";
 
@@ -63,17 +64,18 @@ class GridView {
     this.problems = new ProblemsList(this.store);
     this.editor.input.setAttribute("aria-describedby", "grid-help");
     root.classList.add("sheet-view");
-    root.append(this.tabs, this.reading, el("div", { class: "sheet-bar" }, this.tools, this.find.node), this.order, this.line, this.panel, this.problems.node, this.menu.node, this.help, this.live);
+    root.append(el("div", { class: "sheet-bar" }, this.tabs, this.tools, this.find.node), this.reading, this.order, this.panel, this.line, this.problems.node, this.menu.node, this.help, this.live);
   }
 
   #toolButtons() {
-    const button = (text, keys, click) => el("button", { type: "button", text, title: keys || null, on: { click: () => (click(), this.editor.focus()) } });
-    const find = el("button", { type: "button", text: t("Find"), title: "Ctrl+F", on: { click: () => this.find.open() } });
+    const tool = (name, text, keys, click) => el("button", { type: "button", class: "quiet", title: keys ? `${text} (${keys})` : text, "aria-label": text, on: { click } }, icon(name), el("span", { text }));
+    const button = (name, text, keys, click) => tool(name, text, keys, () => (click(), this.editor.focus()));
+    const find = tool("search", t("Find"), "Ctrl+F", () => this.find.open());
     this.editing = [
-      button(t("Add a row"), "", () => this.actions.addRow()),
-      button(t("Duplicate rows"), "", () => this.actions.duplicateRows()),
-      button(t("Clear rows"), "Ctrl+−", () => this.actions.clearRows()),
-      button(t("Fill down"), "Ctrl+D", () => this.actions.fillDown()),
+      button("add-row", t("Add a row"), "", () => this.actions.addRow()),
+      button("copy", t("Duplicate rows"), "", () => this.actions.duplicateRows()),
+      button("clear-row", t("Clear rows"), "Ctrl+−", () => this.actions.clearRows()),
+      button("fill-down", t("Fill down"), "Ctrl+D", () => this.actions.fillDown()),
     ];
     return [...this.editing, find];
   }

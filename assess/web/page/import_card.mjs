@@ -9,7 +9,7 @@ const SOON_S = 3;
 export class ImportCard {
   /** @param {() => void} choose has the browser's dialog choose a file */
   constructor(choose) {
-    this.choose = el("button", { type: "button", class: "primary", text: t("Choose a model…"), on: { click: choose } });
+    this.choose = el("button", { type: "button", text: t("Choose a model…"), on: { click: choose } });
     this.cancel = el("button", { type: "button", text: t("Cancel"), on: { click: () => imports.cancel() } });
     this.words = el("span");
     this.seconds = el("span", { class: "muted", "aria-hidden": "true" });

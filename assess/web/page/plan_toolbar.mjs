@@ -4,7 +4,8 @@ import { choose, clear, el } from "./elements.mjs";
 import { icon } from "./icons.mjs";
 import { t } from "./texts.mjs";
 
-const BUTTONS_UP_TO = 6; // floors; beyond that a list
+const BUTTONS_UP_TO = 6; // floors; beyond that, or where the window is narrower, a list
+const WIDE = matchMedia("(min-width: 1200px)");
 const KINDS = 5;
 
 export class Toolbar {
@@ -15,6 +16,7 @@ export class Toolbar {
     this.#buildTools();
     this.#buildShown();
     this.#buildView();
+    WIDE.addEventListener("change", () => this.draw());
     this.node = el("div", { class: "plan-toolbar", role: "toolbar", "aria-label": t("Tools of the plan") }, this.floors, this.toolGroup, this.options, this.shown);
   }
 
@@ -103,7 +105,7 @@ export class Toolbar {
   #drawFloors() {
     const { plan } = this.model;
     const floors = plan?.floors ?? [];
-    const isList = floors.length > BUTTONS_UP_TO || (floors.length > 1 && !this.canEdit());
+    const isList = floors.length > BUTTONS_UP_TO || (floors.length > 1 && !(WIDE.matches && this.canEdit()));
     const mark = JSON.stringify([floors, plan?.floor, isList]);
     if (mark === this.floorsShown) return;
     this.floorsShown = mark;

@@ -46,7 +46,7 @@ class StartView {
   }
 
   #openCard() {
-    const open = el("button", { type: "button", class: "primary", text: t("Choose a workbook…"), on: { click: () => chooseWorkbook(this.#store) } });
+    const open = el("button", { type: "button", text: t("Choose a workbook…"), on: { click: () => chooseWorkbook(this.#store) } });
     return el("section", { class: "card" }, el("h3", { text: t("Open a workbook") }),
       el("div", { class: "drop" }, el("p", { text: t("Drop an Excel workbook (.xlsx) anywhere on this page.") }), open));
   }

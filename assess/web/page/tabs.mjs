@@ -1,15 +1,16 @@
 // The tabs of the page: which there are, which is shown, and their views, made when they are first asked for.
 
 import { clear, el } from "./elements.mjs";
+import { icon } from "./icons.mjs";
 import { imports } from "./import_job.mjs";
 import { t } from "./texts.mjs";
 
-/** Key, label and module of every tab; each module exports createView(root, store) -> {show, hide}. */
+/** Key, which is its icon too, label and module of every tab; each module exports createView(root, store) -> {show, hide}. */
 const TABS = [
   ["sheet", () => t("Sheet"), () => import("./grid_view.mjs")],
   ["plan", () => t("Plan"), () => import("./plan_view.mjs")],
   ["what-if", () => t("What if"), () => import("./what_if_view.mjs")],
-  ["simulate", () => t("Simulate and report"), () => import("./simulate_view.mjs")],
+  ["simulate", () => t("Results"), () => import("./simulate_view.mjs")],
 ];
 const IMPORT = ["import", () => t("What was imported"), () => import("./import_view.mjs")];
 const START = ["start", () => t("Start"), () => import("./start_view.mjs")];
@@ -22,7 +23,7 @@ export class Tabs {
 
   constructor(store) {
     this.#store = store;
-    const link = ([key, label]) => el("a", { href: `#${key}`, text: label(), dataset: { tab: key } });
+    const link = ([key, label]) => el("a", { href: `#${key}`, dataset: { tab: key } }, icon(key), label());
     this.nav = el("nav", { class: "tabs", "aria-label": t("Views") }, TABS.map(link));
     this.main = el("main", { id: "view", tabIndex: -1 });
     addEventListener("hashchange", () => this.update());

@@ -25,7 +25,7 @@ function setTheme(theme) {
 
 export function themeSwitch() {
   const options = [["", t("Automatic")], ["light", t("Light")], ["dark", t("Dark")]];
-  const select = choose(options, read(), { "aria-label": t("Colours"), title: t("Colours") });
+  const select = choose(options, read());
   select.addEventListener("change", () => {
     setTheme(select.value);
     try {
