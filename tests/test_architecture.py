@@ -20,7 +20,7 @@ PACKAGE = ROOT / "assess"
 LAYERS = {
     "version": 0, "arrays": 0, "units": 0, "errors": 0, "risk": 0, "resources": 0,
     "text": 0, "compiled": 0, "settings": 1, "i18n": 1, "progress": 1,
-    "pictures": 1, "plans": 1, "environment": 1, "table": 1,
+    "processes": 1, "pictures": 1, "plans": 1, "environment": 1, "table": 1,
     "delivery": 2, "motion": 2, "fragility": 2, "hazard": 2, "intensity": 2,
     "rocking": 3, "rates": 3, "bracket": 3, "details": 3,
     "methods": 4,

@@ -24,6 +24,7 @@ from typing import ParamSpec, TypeVar, cast
 from assess.delivery.folders import private_folder
 from assess.errors import AssessError, ModelError
 from assess.i18n import fill
+from assess.processes import OUT_OF_MEMORY, limit_process, start_module
 from assess.progress import Progress
 
 SECONDS = 120  # processor time that the work may take [s]; the clock may show `PATIENCE` times as much
@@ -32,7 +33,6 @@ PATIENCE = 4
 _ASKED_EVERY = 0.05
 PREFIX = "assess-model-"
 ORDER, ANSWER = "order", "answer"  # names of the files in which a process gets its work and leaves what came out
-OUT_OF_MEMORY = 3  # status with which the process ends when memory runs out
 
 _Found = TypeVar("_Found")
 _Given = ParamSpec("_Given")
@@ -47,14 +47,9 @@ def run_apart(
     with private_folder(PREFIX) as folder:
         order = (work.__module__, work.__qualname__, args, named, SECONDS, MEMORY)
         (folder / ORDER).write_bytes(pickle.dumps(order))
-        # in its own folder no file of the user's can take the place of a module
-        root = str(Path(__file__).parents[2])
-        paths = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
-        process = subprocess.Popen(  # noqa: S603 - our own module, in a folder that we named
-            [sys.executable, "-m", "assess.bim.model_process", str(folder)],
-            stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=folder,
-            env={**os.environ, "PYTHONPATH": paths, "PYTHONSAFEPATH": "1"},
-        )  # fmt: skip
+        process = start_module(
+            "assess.bim.model_process", folder, output=subprocess.DEVNULL, errors=subprocess.DEVNULL, is_apart=False
+        )
         status, end = None, time.monotonic() + PATIENCE * SECONDS
         try:
             while status is None and time.monotonic() <= end:
@@ -98,16 +93,7 @@ def main() -> None:
     folder = Path(sys.argv[1])
     threading.Thread(target=end_with_parent, daemon=True).start()
     module, function, args, named, seconds, memory = pickle.loads((folder / ORDER).read_bytes())  # noqa: S301
-    try:
-        import resource
-    except ImportError:  # Windows: the process that started this one looks at the clock
-        pass
-    else:
-        for kind, most in ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_AS, memory), (resource.RLIMIT_CORE, 0)):
-            _, hard = resource.getrlimit(kind)
-            allowed = most if hard == resource.RLIM_INFINITY else min(most, hard)
-            with suppress(OSError, ValueError):  # macOS does not limit addresses
-                resource.setrlimit(kind, (allowed, hard))
+    limit_process(memory, seconds)
     try:
         work = getattr(importlib.import_module(module), function)
         answer = (False, work(*args, **named))

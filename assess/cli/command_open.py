@@ -71,21 +71,15 @@ def command(
     if missing := [name for name in PACKAGES if find_spec(name) is None]:
         raise AssessError(f"the page needs {', '.join(missing)}, which is not installed. {say_install('web')}")
     from assess.delivery.folders import private_folder
+    from assess.web.limits import PREFIX
     from assess.web.server import Place, Server, bind
-    from assess.web.sessions import PREFIX
 
     place = Place(host, port, tuple(allowed_host or ()), user_header or "", code)
     _check_place(place, path)
-    book = None
-    if path is not None:
-        from assess.web.book import Book
-
-        book = Book.open_disk(path)
     with bind(place) as listening, private_folder(PREFIX) as folder:
         server = Server(listening, place, folder, Path.cwd())
-        if book is not None:
-            for remark in filter(None, (server.take(book), str(book.state()["save_error"]))):
-                say(f"warning  {remark}", err=True)
+        for remark in server.open(path) if path is not None else ():
+            say(f"warning  {remark}", err=True)
         ending = server.run(interrupts.NUMBERS, lambda: _welcome(server, place, no_browser))
     for name in ending.lost:
         say(f"Changes of {name} were not downloaded and are gone.", err=True)

@@ -1,6 +1,6 @@
-"""The Starlette application: what each address answers (see docs/page.md), bodies, the status of what is refused.
+"""What each address answers (see docs/page.md), in the process of a session; bodies, the status of what is refused.
 
-Every answer is worked out in a thread, in the language of the request.
+Every answer is worked out in the language of the request.
 """
 
 import base64
@@ -9,42 +9,41 @@ import json
 import logging
 import math
 import re
-import shutil
 import time
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
-from starlette.applications import Starlette
-from starlette.concurrency import run_in_threadpool
-from starlette.requests import ClientDisconnect, Request
 from starlette.responses import Response
-from starlette.routing import Route
 
 from assess.errors import AssessError
 from assess.i18n import fill, load_catalogue, speaking
-from assess.web.assets import answer_asset, find_asset, pack
+from assess.web.assets import pack
 from assess.web.file_names import clean_name
-from assess.web.guard import MODELS, MOST_MODEL, MOST_SKIPPED, SESSION, skip_body
-from assess.web.importing import FOLDER, ROUTES, SOURCE
+from assess.web.frames import Call
+from assess.web.importing import ROUTES, SOURCE
 from assess.web.jobs import REPORT, Job
-from assess.web.request_errors import BAD_REQUEST, NOT_FOUND, TOO_LARGE, UNUSABLE, RequestError, describe_fault
+from assess.web.limits import MODELS, MOST_MODEL
+from assess.web.request_errors import (
+    BAD_REQUEST,
+    NOT_FOUND,
+    UNUSABLE,
+    WRONG_METHOD,
+    RequestError,
+    describe_fault,
+)
 from assess.web.sessions import Session
 from assess.web.starting import choose, choose_shaking, describe_start
-from assess.web.texts import COOKIE, choose_language, describe_texts
+from assess.web.texts import choose_language, describe_texts
 
 if TYPE_CHECKING:
     from assess.web.book import Book
 
-MOST_JSON = 32 * 2**20
-"""Bytes of a request in JSON: a whole sheet that is pasted."""
-MOST_FILE = 64 * 2**20
-"""Bytes of a file that is sent."""
-POLLED = ("/api/state", "/api/job", MODELS)
-"""What a page asks by itself: it is not its user who asks."""
+FILES = ("/api/upload", "/api/file", MODELS)
+"""Where bodies are files; all others are JSON."""
 LOOK = 1.5
 """Shortest time between two looks at whether the file was changed by another program [s]."""
 WORKBOOK = "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"
@@ -57,15 +56,19 @@ Handler = Callable[["Asked"], Answer]
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """A request: its session, the values of its address, its body or the file that holds it, what an edit calls."""
+    """A request: its session, the values of its address, its body as JSON, as bytes or as a file that holds them."""
 
     session: Session
     query: Mapping[str, str] = field(default_factory=dict)
     body: Mapping[str, Any] = field(default_factory=dict)
-    data: bytes = b""
+    sent: bytes = b""
     file: Path | None = None
     language: str = "en"
-    note_edit: Callable[[Session], None] = lambda _session: None
+
+    @property
+    def data(self) -> bytes:
+        """The bytes that were sent."""
+        return self.file.read_bytes() if self.file else self.sent
 
     @property
     def book(self) -> "Book":
@@ -136,7 +139,7 @@ def _change(asked: Asked, change: "Callable[[Book, int], dict[str, Any]]") -> An
     if not isinstance(version, int) or isinstance(version, bool):
         raise RequestError(fill("The request does not name the version of the workbook."), UNUSABLE)
     answer = change(book, version)
-    asked.note_edit(asked.session)
+    asked.session.note_edit()
     return _note_download(asked, answer)
 
 
@@ -166,19 +169,15 @@ def _upload(asked: Asked) -> Answer:
     """Hold a workbook that was dropped in; a COBie file, which is no inventory yet, is read as a building model is."""
     from assess.workbook.read import is_cobie
 
-    name, session = asked.name, asked.session
-    if not is_cobie(asked.data):
-        return session.hold(name, asked.data).describe()
-    session.check_room(len(asked.data))
-    file = session.make_folder(FOLDER) / SOURCE
-    file.write_bytes(asked.data)
-    return _import(replace(asked, file=file))
+    name, data = asked.name, asked.data
+    return _import(asked) if is_cobie(data) else asked.session.hold(name, data).describe()
 
 
 def _add_file(asked: Asked) -> Answer:
+    data = asked.data
     with asked.session.lock:
-        asked.session.check_room(len(asked.data))
-        asked.book.add_file(asked.name, asked.data)
+        asked.session.check_room(len(data))
+        asked.book.add_file(asked.name, data)
     return asked.book.describe()
 
 
@@ -248,14 +247,8 @@ def _find_report(asked: Asked) -> Answer:
 
 
 def _import(asked: Asked) -> Answer:
-    if asked.file is None:
-        raise RequestError(fill("The request cannot be read."), UNUSABLE)
-    try:
-        name, routes = clean_name(asked.name), choose(asked.query, "routes", ROUTES)
-    except RequestError:
-        shutil.rmtree(asked.file.parent, ignore_errors=True)
-        raise
-    asked.session.read_model(asked.file.parent, name or SOURCE, routes)
+    name, routes = clean_name(asked.name), choose(asked.query, "routes", ROUTES)
+    asked.session.read_model(asked.file or asked.sent, name or SOURCE, routes)
     return _describe_import(asked)
 
 
@@ -278,8 +271,8 @@ def _after(act: Callable[[Asked], object], describe: Handler) -> Handler:
     return handle
 
 
-TABLE: tuple[tuple[str, int, Mapping[str, Handler]], ...] = (
-    ("GET", 0, {
+TABLE: tuple[tuple[str, Mapping[str, Handler]], ...] = (
+    ("GET", {
         "/api/book": _describe_book,
         "/api/state": _describe_state, "/api/download": _download, "/api/live": _describe_live,
         **{f"/api/{one}": partial(_evaluate, one) for one in ("routes", "plan", "picture", "catalogue")},
@@ -291,7 +284,7 @@ TABLE: tuple[tuple[str, int, Mapping[str, Handler]], ...] = (
         "/api/start": lambda asked: describe_start(asked.session.home),
         "/api/texts": lambda asked: describe_texts(asked.query.get("language") or asked.language),
     }),
-    ("POST", MOST_JSON, {
+    ("POST", {
         "/api/edit": _edit, "/api/close": _close, "/api/what-if": partial(_evaluate, "what-if"),
         "/api/save": _after(lambda asked: asked.book.save(), lambda asked: asked.book.state()),
         "/api/reload": _after(lambda asked: asked.book.reload(), lambda asked: asked.book.describe()),
@@ -302,63 +295,46 @@ TABLE: tuple[tuple[str, int, Mapping[str, Handler]], ...] = (
         "/api/import/cancel": _after(lambda asked: asked.session.cancel_import(), _describe_import),
         "/api/import/open": lambda asked: asked.session.open_imported(choose_shaking(asked.body)).describe(),
         "/api/start": lambda asked: asked.session.begin(asked.body).describe(),
+        "/api/upload": _upload, "/api/file": _add_file, MODELS: _import,
     }),
-    ("POST", MOST_FILE, {"/api/upload": _upload, "/api/file": _add_file}),
-    ("POST", MOST_MODEL, {MODELS: _import}),
 )  # fmt: skip
-"""By method, the bytes that a body may have, and address what answers: bodies up to `MOST_JSON` are JSON, larger ones
-files, and building models are saved in a folder."""
+"""By method and address what answers; the bytes that a body may have stand in `assess.web.limits`."""
+_REST = "{name:path}"
+"""The end of an address that holds a name."""
 
 
-def build_application(note_edit: Callable[[Session], None]) -> Starlette:
-    """Return the application; `note_edit` is called after every change of a workbook."""
-
-    def route(path: str, method: str, most: int, handler: Handler) -> Route:
-        async def serve(request: Request) -> Response:
-            asked, fault = _ask(request, note_edit), None
-            try:
-                if most == MOST_MODEL:
-                    asked = replace(asked, file=await _save_model(request, asked.session))
-                elif most:
-                    data = b"".join([part async for part in _stream(request, most, partial(_check_size, most))])
-                    asked = replace(asked, data=data) if most == MOST_FILE else replace(asked, body=_parse_body(data))
-            except (RequestError, OSError) as error:
-                fault = error
-            return await run_in_threadpool(lambda: pack(_carry_out(handler, asked, fault), request.headers))
-
-        return Route(path, serve, methods=[method])
-
-    def give_file(request: Request) -> Response:
-        found = find_asset(request.path_params["name"])
-        if found is None:
-            return _refuse(RequestError(fill("There is nothing at this address."), NOT_FOUND))
-        return answer_asset(found, request.headers, request.query_params.get("v", ""))
-
-    routes = [route(path, method, most, one) for method, most, every in TABLE for path, one in every.items()]
-    return Starlette(routes=[*routes, Route("/{name:path}", give_file, methods=["GET"])])
-
-
-def _ask(request: Request, note_edit: Callable[[Session], None]) -> Asked:
-    session: Session = request.scope[SESSION]
-    if request.url.path not in POLLED:
-        session.seen = time.monotonic()
-    language = session.language or (session.book.language if session.book else "")
-    accepted = request.headers.get("accept-language", "")
-    language = choose_language(request.cookies.get(COOKIE, ""), language, accepted)
-    return Asked(session, {**request.query_params, **request.path_params}, language=language, note_edit=note_edit)
-
-
-def _carry_out(handler: Handler, asked: Asked, fault: Exception | None) -> Response:
-    with speaking(load_catalogue(asked.language)):
+def answer(session: Session, call: Call) -> Response:
+    """Return the answer to a request, in the language that its user chose, else that of the workbook or browser."""
+    of_book = session.language or (session.book.language if session.book else "")
+    language = choose_language(call.chosen, of_book, call.accepted)
+    with speaking(load_catalogue(language)):
         try:
-            if fault is not None:
-                raise fault
-            answer = handler(asked)
-            return answer if isinstance(answer, Response) else _to_json(answer)
+            handler, named = _find_handler(call)
+            is_json = call.method == "POST" and call.path not in FILES
+            file = Path(call.file) if call.file else None
+            asked = Asked(session, {**call.query, **named}, {}, call.data, file, language)
+            found = handler(replace(asked, body=_parse_body(asked.data)) if is_json else asked)
+            response = found if isinstance(found, Response) else _to_json(found)
+            return pack(response, {"accept-encoding": call.encoding})
         except Exception as error:
             if not isinstance(error, AssessError | OSError):
                 LOG.exception("a request failed")
             return _refuse(error)
+
+
+def _find_handler(call: Call) -> tuple[Handler, Mapping[str, str]]:
+    is_known = False
+    for method, every in TABLE:
+        for path, handler in every.items():
+            start = path.removesuffix(_REST)
+            is_named = start != path and call.path.startswith(start)
+            if is_named or path == call.path:
+                is_known = True
+                if method == call.method:
+                    return handler, {"name": call.path.removeprefix(start)} if is_named else {}
+    if is_known:
+        raise RequestError(fill("This address does not answer to that method."), WRONG_METHOD)
+    raise RequestError(fill("There is nothing at this address."), NOT_FOUND)
 
 
 def _refuse(error: Exception) -> Response:
@@ -387,74 +363,23 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-# ---------------------------------------------------------------- bodies
-
-
-async def _save_model(request: Request, session: Session) -> Path:
-    """Save a file that is too large for the memory in a folder of its own, one at a time."""
-
-    def begin() -> tuple[Path, int]:
-        session.sending_slots.take()
-        try:
-            room = session.find_room()
-            session.check_room(int(request.headers.get("content-length", "0")), room)  # not every request tells it
-            return session.make_folder(FOLDER) / SOURCE, room
-        except BaseException:
-            session.sending_slots.release()
-            raise
-
-    def check(size: int) -> None:
-        _check_size(MOST_MODEL, size)
-        session.check_room(size, room)
-
-    try:
-        path, room = await run_in_threadpool(begin)
-    except (RequestError, OSError):
-        await skip_body(request.receive)
-        raise
-    try:
-        with path.open("xb") as file:
-            async for part in _stream(request, min(room, MOST_MODEL), check):
-                await run_in_threadpool(file.write, part)
-    except BaseException:  # what is too large, or breaks off, leaves nothing
-        shutil.rmtree(path.parent, ignore_errors=True)
-        raise
-    finally:
-        session.sending_slots.release()
-    return path
-
-
-async def _stream(request: Request, most: int, check: Callable[[int], None]) -> AsyncIterator[bytes]:
-    """Yield the body of a request in parts, up to `most` bytes; then `check` its size.
-
-    What is too large is read to its end, so that the browser gets to the answer. Raises RequestError if it breaks off.
-    """
-    size = 0
-    try:
-        async for part in request.stream():
-            size += len(part)
-            if size > MOST_SKIPPED:
-                break
-            if size <= most:
-                yield part
-    except ClientDisconnect:
-        raise RequestError(fill("The request broke off."), BAD_REQUEST) from None
-    check(size)
-
-
-def _check_size(most: int, size: int) -> None:
-    if size > most:
-        raise RequestError(fill("It is larger than {most:.0f} MB.", most=most / 2**20), TOO_LARGE)
-
-
 def _parse_body(data: bytes) -> dict[str, Any]:
     """Return a JSON object, {} for an empty body; RequestError if it holds NaN, infinity or halves of characters."""
+
+    def refuse(name: str) -> float:
+        raise ValueError(name)
+
+    def read(text: str) -> float:
+        found = float(text)
+        return found if math.isfinite(found) else refuse(text)
+
     if not data:
         return {}
     try:
-        found = json.loads(data)
-        json.dumps(found, ensure_ascii=False, allow_nan=False).encode()
-    except (ValueError, RecursionError):  # also UnicodeError, and a number such as NaN or 1e999
+        found = json.loads(data.decode(), parse_float=read, parse_constant=refuse)
+        if re.search(rb"\\u[dD]", data):  # a half of a character, maybe
+            json.dumps(found, ensure_ascii=False).encode()
+    except (ValueError, RecursionError):  # also UnicodeError
         found = None
     if not isinstance(found, dict):
         raise RequestError(fill("The request cannot be read."), BAD_REQUEST)

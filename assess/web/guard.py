@@ -5,8 +5,10 @@ session, or comes in by its entrance, else 401; it changes something only if it 
 is not larger than anything that is accepted, else 413.
 """
 
+import asyncio
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import AsyncIterator, Collection, Mapping
+from contextlib import suppress
 from html import escape
 
 from starlette.requests import HTTPConnection
@@ -14,16 +16,19 @@ from starlette.responses import Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from assess.i18n import Text, fill, gettext, load_catalogue, speaking
-from assess.web.request_errors import FORBIDDEN, NO_SESSION, TOO_LARGE, WRONG_HOST, RequestError
-from assess.web.sessions import ENTRANCE, Keys, Session
+from assess.web.limits import MOST, MOST_MODEL, SMALL, say_large
+from assess.web.request_errors import (
+    BAD_REQUEST,
+    FORBIDDEN,
+    NO_SESSION,
+    TIMEOUT,
+    TOO_LARGE,
+    WRONG_HOST,
+    RequestError,
+)
 from assess.web.texts import COOKIE, choose_language
+from assess.web.users import ENTRANCE, Keys, User
 
-MOST_BODY = 64 * 2**20
-"""Bytes of the largest body that a request may have, but for a building model; most may have less."""
-MOST_MODEL = 256 * 2**20
-"""Bytes of the largest building model."""
-MODELS = "/api/import"
-"""Where building models are sent."""
 MOST_SKIPPED = 2 * MOST_MODEL
 """Bytes of a body that is too large which are still read, so that the browser gets to the answer."""
 COOKIE_AGE = 30 * 24 * 3600
@@ -56,8 +61,11 @@ _AGAIN = fill("Press Enter in the window in which assess runs: it opens the page
 class Guard:
     """Lets through what comes from our page and belongs to a session."""
 
-    def __init__(self, app: ASGIApp, keys: Keys, hosts: Collection[str], schemes: Collection[str] = ("http",)) -> None:
-        self._app, self._keys = app, keys
+    def __init__(
+        self, app: ASGIApp, keys: Keys, hosts: Collection[str], schemes: Collection[str] = ("http",),
+        silence: float = 20.0,
+    ) -> None:  # fmt: skip
+        self._app, self._keys, self._silence = app, keys, silence
         self._hosts = frozenset(host.lower() for host in hosts)
         self._origins = frozenset(f"{scheme}://{host}" for scheme in schemes for host in self._hosts)
 
@@ -98,13 +106,13 @@ class Guard:
             return _refuse(visit, FORBIDDEN, fill("The request does not come from this page."))
         length = visit.headers.get("content-length", "0")
         size = int(length) if length.isascii() and length.isdigit() and len(length) < 20 else MOST_MODEL + 1
-        if size > (MOST_MODEL if path == MODELS else MOST_BODY):
-            await skip_body(receive)
-            return _refuse(visit, TOO_LARGE, fill("The file is too large."))
+        if size > MOST.get(path, SMALL):
+            await skip_body(receive, self._silence)
+            return _refuse(visit, TOO_LARGE, say_large(MOST.get(path, SMALL)))
         visit.scope[SESSION] = session
         return None
 
-    def _enter(self, visit: HTTPConnection, session: Session | None) -> Response:
+    def _enter(self, visit: HTTPConnection, session: User | None) -> Response:
         """Let a first request in, or lead to the page; not by a redirect, which would lose a strict cookie."""
         is_visit = visit.scope["method"] == "GET" and "sec-purpose" not in visit.headers  # no browser looking ahead
         try:
@@ -124,13 +132,32 @@ class Guard:
         return answer
 
 
-async def skip_body(receive: Receive) -> None:
-    """Read what is sent and is refused: a browser that is still sending when the connection ends shows no answer."""
-    size, is_more = 0, True
-    while is_more and size < MOST_SKIPPED:
-        message = await receive()
-        size += len(message.get("body", b""))
+async def read_parts(receive: Receive, silence: float) -> AsyncIterator[bytes]:
+    """Yield the body of a request in parts; RequestError if it breaks off, or nothing comes for so long [s]."""
+    is_more = True
+    while is_more:
+        try:
+            async with asyncio.timeout(silence):
+                message = await receive()
+        except TimeoutError:
+            text = fill("Nothing of the request came for {seconds:.0f} s.", seconds=silence)
+            raise RequestError(text, TIMEOUT) from None
+        if message["type"] == "http.disconnect":
+            raise RequestError(fill("The request broke off."), BAD_REQUEST)
         is_more = message.get("more_body", False)
+        yield message.get("body", b"")
+
+
+async def skip_body(receive: Receive, silence: float, size: int = 0) -> None:
+    """Read what is sent and is refused: a browser that is still sending when the connection ends shows no answer.
+
+    `size`: bytes of it that have been read.
+    """
+    with suppress(RequestError):
+        async for part in read_parts(receive, silence):
+            size += len(part)
+            if size > MOST_SKIPPED:
+                break
 
 
 def _refuse(visit: HTTPConnection, status: int, message: Text | str, fix: Text | str = "") -> Response:

@@ -19,14 +19,17 @@ from assess.errors import AssessError, CancelledError
 from assess.i18n import fill, gettext
 from assess.progress import Progress, Report
 from assess.web.file_names import ENDINGS, make_safe
-from assess.web.jobs import STAGES, Slots
+from assess.web.jobs import STAGES
 from assess.web.request_errors import CONFLICT, NOT_FOUND, RequestError, describe_fault
+from assess.web.slots import Slots
 from assess.web.starting import Made
 
 if TYPE_CHECKING:
     from assess.bim.import_workbook import ImportedBuilding
 
 FOLDER = "import-"
+READING = fill("Other building models are being read. Try again in a minute.")
+"""Why there is no place for another."""
 SOURCE = "model"
 """In its folder: what was sent, whatever it is called."""
 LEFT_AFTER = 90.0
@@ -71,14 +74,14 @@ class Import:
 
     def __init__(self, folder: Path, name: str, routes: Routes, slots: Slots) -> None:
         self.id, self.name, self.state, self.book = secrets.token_hex(8), name, "running", ""
-        self._folder, self._routes, self._slots = folder, routes, slots
+        self._folder, self._routes = folder, routes
         self._asked, self._lock = _Asked(), threading.RLock()
         self._started, self._latest = time.monotonic(), Report("", 0.0, "", None)
         self._error: Exception | None = None
         self._found: ImportedBuilding | None = None
         self._taken: dict[str, Any] | None = None
         try:
-            slots.take()
+            self._slot = slots.take()
         except RequestError:
             shutil.rmtree(folder, ignore_errors=True)
             raise
@@ -103,7 +106,7 @@ class Import:
             if not isinstance(fault, AssessError | OSError):
                 LOG.exception("a building model could not be read")
         shutil.rmtree(self._folder, ignore_errors=True)
-        self._slots.release()
+        self._slot.release()
         with self._lock:
             if self.state != "running":
                 return

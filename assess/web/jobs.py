@@ -3,11 +3,9 @@
 import io
 import json
 import logging
-import os
 import secrets
 import shutil
 import subprocess
-import sys
 import threading
 import zipfile
 from collections.abc import Mapping
@@ -20,11 +18,13 @@ from typing import TYPE_CHECKING, Any
 from assess.errors import WorkbookError
 from assess.i18n import Text, fill, gettext, spoken
 from assess.model import Inventory
+from assess.processes import start_module
 from assess.report_formats import FILES
 from assess.settings import change_settings
 from assess.web.file_names import list_present
 from assess.web.job_process import INPUT, ORDER, OUT, SUMMARY
-from assess.web.request_errors import NOT_FOUND, TOO_MANY, UNUSABLE, RequestError
+from assess.web.request_errors import NOT_FOUND, UNUSABLE, RequestError
+from assess.web.slots import Slots
 from assess.workbook.records import find_place
 
 if TYPE_CHECKING:
@@ -50,50 +50,30 @@ STAGES: Mapping[str, Text] = {
 }
 """What the stages are called; others by their own names."""
 BUSY = fill("Other simulations are running. Try again in some minutes.")
-READING = fill("Other building models are being read. Try again in a minute.")
 """Why there is no place for another."""
-
-
-class Slots(threading.BoundedSemaphore):
-    """How many jobs may run at once, in all sessions; `refusal` says why there is no place."""
-
-    def __init__(self, most: int, refusal: Text = BUSY) -> None:
-        super().__init__(most)
-        self._refusal = refusal
-
-    def take(self) -> None:
-        """Take a place, to be released; RequestError where there is none."""
-        if not self.acquire(blocking=False):
-            raise RequestError(self._refusal, TOO_MANY)
 
 
 class Job:
     """One simulation of one version of a workbook; InputError for a wrong option or workbook, or no free slot."""
 
     def __init__(self, book: "Book", body: Mapping[str, Any], parent: Path, slots: Slots) -> None:
-        self.id, self._slots, self._lock = secrets.token_hex(8), slots, threading.RLock()
+        self.id, self._lock = secrets.token_hex(8), threading.RLock()
         self._folder = parent / f"job-{self.id}"
         self._now: dict[str, Any] = {
             "state": "running", "stage": "", "detail": "", "share": 0.0, "seconds_left": None, "message": "",
             "problems": [],
         }  # fmt: skip
-        slots.take()
-        root = str(Path(__file__).parents[2])
-        paths = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
+        self._slot = slots.take()
         temporary = str(self._folder / TEMPORARY)  # out of the reach of a Ctrl-C in the terminal, too
-        variables = {"TMPDIR": temporary, "TEMP": temporary, "TMP": temporary, "PYTHONPATH": paths}
         try:
             self._folder.mkdir(mode=0o700)
             self._order, self._inventory = prepare(book, body, self._folder)
             Path(temporary).mkdir()
+            variables = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), temporary)
             with (self._folder / ERRORS).open("wb") as errors:
-                self._process = subprocess.Popen(  # noqa: S603 - our own module, in a folder that we named
-                    [sys.executable, "-m", "assess.web.job_process", str(self._folder)], stdin=subprocess.PIPE,
-                    stdout=subprocess.PIPE, stderr=errors, cwd=self._folder, creationflags=_OWN_GROUP,
-                    env={**os.environ, **variables, "PYTHONSAFEPATH": "1"}, start_new_session=True,
-                )  # fmt: skip
+                self._process = start_module("assess.web.job_process", self._folder, errors=errors, variables=variables)
         except BaseException:
-            slots.release()
+            self._slot.release()
             shutil.rmtree(self._folder, ignore_errors=True)
             raise
         self._reader = threading.Thread(target=copy_context().run, args=(self._listen,), name="assess-job", daemon=True)
@@ -115,7 +95,7 @@ class Job:
                     last = message
                 elif self.is_running:
                     self._now.update(message)
-        self._slots.release()
+        self._slot.release()
         with self._lock:
             if self.is_running:
                 self._now.update(last)
@@ -191,8 +171,6 @@ class Job:
             return paths[name].read_bytes()
 
 
-_OWN_GROUP: int = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
-"""Out of the reach of a Ctrl-C in the terminal on Windows; elsewhere the process gets a session of its own."""
 FORMATS = tuple(name for name in FILES if name not in ("npz", "parquet"))
 """Files that the page offers; results.json is always written."""
 OPTIONS = ("verify", "runs", "seed", "scale", "scenario")

@@ -6,8 +6,8 @@ from assess.errors import AssessError, CancelledError, InputError, OutputError, 
 from assess.i18n import Text, fill, gettext
 
 BAD_REQUEST, NO_SESSION, FORBIDDEN, NOT_FOUND, WRONG_METHOD = 400, 401, 403, 404, 405
-CONFLICT, TOO_LARGE, WRONG_HOST, UNUSABLE, TOO_MANY = 409, 413, 421, 422, 429
-BROKEN = 500
+TIMEOUT, CONFLICT, TOO_LARGE, WRONG_HOST, UNUSABLE, TOO_MANY = 408, 409, 413, 421, 422, 429
+BROKEN, UNAVAILABLE = 500, 503
 MOST = 200
 """Problems in one answer."""
 

@@ -2,40 +2,29 @@
 
 import ipaddress
 import os
-import secrets
 import signal
 import socket
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import uvicorn
 
-from assess.delivery.deliver import saving
-from assess.errors import AssessError, InputError
-from assess.web.endpoints import build_application
+from assess.errors import InputError
+from assess.web.front import Front
 from assess.web.guard import Guard
-from assess.web.importing import find_free
-from assess.web.jobs import READING, Slots
-from assess.web.sessions import ENTRANCE, HOSTED, Keys, Limits, Session
-
-if TYPE_CHECKING:
-    from assess.web.book import Book
+from assess.web.limits import HOSTED, OWN
+from assess.web.users import ENTRANCE, Keys, User
+from assess.web.workers import Link, Process, WorkerGoneError, ask_own
 
 LOOPBACK = "127.0.0.1"
-SAVED_AFTER = 1.0
-"""Time from the last change of a workbook to its being saved [s]; longer where saving itself takes long."""
-SAVED_AT_LATEST = 3.0
-"""Time from the first change that is not saved to its being saved, however much is changed after it [s]; as above."""
-SAVED_AGAIN_AFTER = 3.0
-"""Time after which saving that has failed is tried again [s]."""
-SAVING_SHARE = 0.3
-"""Most of the time that saving may take while a workbook is being changed [-]."""
+Start = Callable[[Path, Mapping[str, Any]], Link]
+"""Starts the process of a session in its folder, with its order."""
 LOOKED_EVERY = 60.0
 """Time between two looks for sessions that have ended [s]."""
 HTTP = 80
@@ -102,92 +91,43 @@ def bind(place: Place) -> socket.socket:
     return listening
 
 
-class Keeper(threading.Thread):
-    """Saves workbooks of the disk a moment after their last change, and ends sessions."""
-
-    def __init__(self, keys: Keys) -> None:
-        super().__init__(name="assess-keeper", daemon=True)
-        self._keys, self._due = keys, dict[Session, float]()
-        self._latest = dict[Session, float]()
-        self._took = 0.0  # by the last save [s]
-        self._woken, self._is_ended = threading.Condition(), False
-        self._next_look = time.monotonic() + LOOKED_EVERY
-
-    def note_edit(self, session: Session) -> None:
-        """Have a workbook be saved, once nothing more is changed for a moment, or soon."""
-        if session.book is not None and session.book.mode == "disk":
-            with self._woken:
-                now, pause = time.monotonic(), self._took / SAVING_SHARE
-                latest = self._latest.setdefault(session, now + max(SAVED_AT_LATEST, pause))
-                self._due[session] = min(now + max(SAVED_AFTER, pause), latest)
-                self._woken.notify()
-
-    def end(self) -> None:
-        """End, after what is being saved."""
-        with self._woken:
-            self._is_ended = True
-            self._woken.notify()
-        self.join()
-
-    def run(self) -> None:
-        """Save what is due and end sessions until the end."""
-        while (sessions := self._wait()) is not None:
-            for session in sessions:
-                started = time.monotonic()
-                session.save()
-                self._took = time.monotonic() - started
-                state = session.book.state() if session.book else {}
-                if state.get("unsaved") and state["save_error"] and not state["changed_outside"]:
-                    pause = max(SAVED_AGAIN_AFTER, self._took / SAVING_SHARE)  # what stood in the way may be gone
-                    with self._woken:
-                        self._due.setdefault(session, time.monotonic() + pause)
-            if time.monotonic() >= self._next_look:
-                self._next_look = time.monotonic() + LOOKED_EVERY
-                self._keys.expire(time.monotonic())
-
-    def _wait(self) -> list[Session] | None:
-        with self._woken:
-            while not self._is_ended:
-                now = time.monotonic()
-                due = [session for session, at in self._due.items() if at <= now]
-                if due or now >= self._next_look:
-                    for session in due:
-                        del self._due[session]
-                        self._latest.pop(session, None)
-                    return due
-                self._woken.wait(min([*self._due.values(), self._next_look]) - now)
-        return None
-
-
 class Server:
     """The page of one workbook, or of several users, until it is stopped."""
 
-    def __init__(self, listening: socket.socket, place: Place, folder: Path, home: Path) -> None:
+    def __init__(
+        self, listening: socket.socket, place: Place, folder: Path, home: Path, start: Start = Process
+    ) -> None:
         self._listening, self._place = listening, place
         self.port = int(listening.getsockname()[1])
-        limits = HOSTED if place.is_hosted else Limits()
-        slots, reading_slots = Slots(limits.jobs), Slots(limits.jobs, READING)
-        self._keys = Keys(place.user_header, self.port, lambda: Session(
-            secrets.token_urlsafe(32), Path(tempfile.mkdtemp(prefix="session-", dir=folder)),
-            None if place.is_hosted else home, limits, slots=slots, reading_slots=reading_slots,
-            language=place.language,
+        limits = HOSTED if place.is_hosted else OWN
+        order = {"home": "" if place.is_hosted else str(home), "limits": asdict(limits), "language": place.language,
+                 "server": os.getpid()}  # fmt: skip
+        self._keys = Keys(place.user_header, self.port, lambda: User(
+            Path(tempfile.mkdtemp(prefix="session-", dir=folder)), lambda own: start(own, order)
         ), limits)  # fmt: skip
         names = (LOOPBACK, "localhost", "[::1]")
         hosts = [*(f"{name}:{self.port}" for name in names), *(names[:2] if self.port == HTTP else ())]
         schemes = ["http"]
         if place.is_hosted:
             hosts, schemes = list(place.allowed), ["http", "https"]
-        self._keeper = Keeper(self._keys)
-        application = build_application(self._keeper.note_edit)
-        config = uvicorn.Config(Guard(application, self._keys, hosts, schemes), access_log=False, log_config=None,
+        guard = Guard(Front(limits), self._keys, hosts, schemes, limits.silence)
+        config = uvicorn.Config(guard, access_log=False, log_config=None,
                                 log_level="critical", lifespan="off", ws="none", http="h11", loop="asyncio",
                                 server_header=False, date_header=False, proxy_headers=False,
                                 timeout_graceful_shutdown=GRACE, timeout_keep_alive=30)  # fmt: skip
         self._uvicorn = _Uvicorn(config)
 
-    def take(self, book: "Book") -> str:
-        """Open a workbook in the session of the own machine; return what its user should know, blank without."""
-        return self._keys.sessions()[0].take(book).remark
+    def open(self, path: Path) -> list[str]:
+        """Open a workbook in the session of the own machine; return what its user should know."""
+        (user,) = self._keys.users()
+        user.link = user.start(user.folder)
+        remarks: list[str] | None = ask_own(user.link, "open", path=str(path.absolute()))["remarks"]
+        if remarks is None:
+            from assess.web.book import Book
+
+            Book.open_disk(path)  # it raises why
+            raise InputError.about("{path} cannot be opened.", path=path)
+        return remarks
 
     def issue_address(self) -> str:
         """Return an address that opens the page once, in one browser; where a proxy is in front, its way in."""
@@ -212,32 +152,28 @@ class Server:
                 if handler not in (signal.SIG_IGN, None):
                     stack.callback(signal.signal, number, handler)
                     signal.signal(number, stop)
-            self._keeper.start()
+            ended = threading.Event()
+            threading.Thread(target=self._watch, args=(ended,), name="assess-watch", daemon=True).start()
             try:
                 started()
                 self._uvicorn.run(sockets=[self._listening])
             finally:
-                self._keeper.end()
-                ending = self._save_all()
-                for session in self._keys.sessions():
-                    session.close()
+                ended.set()
+                ending = self._end()
         return ending
 
-    def _save_all(self) -> Ending:
+    def _watch(self, ended: threading.Event) -> None:
+        while not ended.wait(LOOKED_EVERY):
+            self._keys.expire(time.monotonic())
+
+    def _end(self) -> Ending:
         ending = Ending()
-        for session in self._keys.sessions():
-            book = session.book
-            if book is None:
-                continue
-            session.save()
-            is_unsaved = book.state()["unsaved"] and (book.mode == "disk" or session.downloaded != book.version)
-            path = _keep_changes(book, session.home) if is_unsaved and not self._place.is_hosted else None
-            if path is not None:
-                ending.kept.append((book.name, str(path)))
-            elif is_unsaved:
-                ending.lost.append(book.name)
-            elif book.mode == "disk":
-                ending = replace(ending, saved=book.name)
+        for user in self._keys.users():
+            if user.link is not None:
+                with suppress(WorkerGoneError):
+                    found = Ending(**ask_own(user.link, "end"))
+                    ending = Ending(found.saved or ending.saved, ending.kept + found.kept, ending.lost + found.lost)
+            user.close()
         return ending
 
 
@@ -248,16 +184,3 @@ class _Uvicorn(uvicorn.Server):
     def capture_signals(self) -> Iterator[None]:
         """Leave signals alone."""
         yield
-
-
-def _keep_changes(book: "Book", home: Path | None) -> Path | None:
-    """Write a workbook, with its changes, under a new name: next to its file, else where one may; None if nowhere."""
-    with suppress(AssessError):
-        data = book.write()
-        for folder in filter(None, (book.path and book.path.parent, home, Path.home())):
-            with suppress(OSError):
-                path = folder / find_free(f"{Path(book.name).stem}-changes{Path(book.name).suffix}", folder)
-                with saving(path) as part:
-                    part.write_bytes(data)
-                return path
-    return None

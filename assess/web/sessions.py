@@ -1,107 +1,64 @@
-"""Sessions: who may ask what, one workbook and one job each, a private folder, and when they end.
+"""What one user has open, in the process of a session: a workbook and what it holds, imports, a simulation."""
 
-On the own machine there is one session, and the address that was printed opens it once: its ticket becomes a cookie.
-Behind a proxy that authenticates, every user whom the proxy names has a session of their own.
-"""
-
-import hmac
 import json
-import os
-import secrets
 import shutil
 import tempfile
 import threading
-import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from starlette.requests import HTTPConnection
-
 from assess.delivery.folders import is_left, is_ours
 from assess.errors import AssessError
 from assess.i18n import fill
 from assess.web.file_names import make_safe
-from assess.web.importing import Import, Routes
-from assess.web.jobs import Job, Slots
-from assess.web.request_errors import CONFLICT, NOT_FOUND, TOO_MANY, RequestError
+from assess.web.importing import FOLDER, READING, SOURCE, Import, Routes
+from assess.web.jobs import BUSY, Job
+from assess.web.limits import OWN, PREFIX, Limits, check_room, find_room
+from assess.web.request_errors import CONFLICT, NOT_FOUND, RequestError
+from assess.web.slots import Slots
 from assess.web.starting import Made, build_workbook, place_files, place_workbook
 
 if TYPE_CHECKING:
     from assess.web.book import Book
     from assess.web.live import LiveView
 
-ENTRANCE = "/enter"
-"""The path to which the printed address leads."""
-COOKIE = "assess"
-"""Beginning of the name of the cookie; browsers send cookies of a host to all its ports, so its end is the port."""
-LONGEST_USER = 200
-"""Characters of a name that a proxy may give."""
-PREFIX = "assess-open-"
-"""Beginning of the name of the folder of a server."""
 NOTE = "opened.json"
-"""In the folder of a session: which workbook it has open, and the process; other servers of the same user read it."""
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """What one session and all of them may take: bytes of the files of one session, sessions and simulations at once.
-
-    `idle` is the time without a request of its user after which a session ends [s].
-    """
-
-    bytes: int = 1_000_000_000
-    sessions: int = 1
-    jobs: int = 1
-    idle: float = float("inf")
-
-
-HOSTED = Limits(bytes=300_000_000, sessions=50, jobs=2, idle=12 * 3600.0)
-"""Limits of a server for several users."""
-SENDING = fill("Another building model is being sent. Wait until it has been received, then try again.")
+"""In the folder of a session: which workbook it has open, and the server; other servers of the same user read it."""
 
 
 @dataclass(slots=True, eq=False)
 class Session:
-    """What one user has open; `key` is the value of its cookie, `folder` is removed with it.
+    """What one user has open; its `folder` lies in that of the server.
 
     * `home`: where new workbooks are made: the folder in which the command was started; None: they are only held.
-    * `slots`, `reading_slots`, `sending_slots`: places of simulations and of building models, of all sessions; and of a
-      model of this one while it is sent: one at a time, so that their bytes can be counted.
+    * `server`: the process of the server.
     * `reading`, `imported`: the building model that was sent last, until it is a workbook, and that of the workbook.
-    * `seen`, `looked`: when its user last asked for anything, and when the file was last looked at.
+    * `looked`: when the file was last looked at.
     * `downloaded`: version of the workbook that was downloaded last.
+    * `note_edit`: called after every change of the workbook.
     """
 
-    key: str
     folder: Path
     home: Path | None = None
-    limits: Limits = field(default_factory=Limits)
+    limits: Limits = OWN
+    language: str = ""
+    server: int = 0
     book: "Book | None" = None
     live: "LiveView | None" = None
     job: Job | None = None
-    slots: Slots = field(default_factory=lambda: Slots(1))
     reading: Import | None = None
     imported: Import | None = None
-    reading_slots: Slots = field(default_factory=lambda: Slots(1))
-    sending_slots: Slots = field(default_factory=lambda: Slots(1, SENDING))
-    language: str = ""
-    seen: float = field(default_factory=time.monotonic)
     looked: float = 0.0
     downloaded: int = 0
+    note_edit: Callable[[], None] = lambda: None
     lock: threading.RLock = field(default_factory=threading.RLock)
 
-    def find_room(self) -> int:
-        """Return how many bytes more this session may have."""
-        return self.limits.bytes - sum(path.stat().st_size for path in self.folder.rglob("*") if path.is_file())
-
-    def check_room(self, size: int, room: int | None = None) -> None:
-        """Raise RequestError where so many bytes more are too many for one session; `room` is what it has left."""
-        if size > (self.find_room() if room is None else room):
-            most = self.limits.bytes / 1e6
-            raise RequestError(fill("The files of this session have more than {most:.0f} MB.", most=most), TOO_MANY)
+    def check_room(self, size: int) -> None:
+        """Raise RequestError where so many bytes more are too many for one session."""
+        check_room(size, find_room(self.folder, self.limits), self.limits)
 
     def make_folder(self, kind: str) -> Path:
         """Return a new folder whose name begins so: of a building model, or of the files of a held workbook."""
@@ -115,7 +72,7 @@ class Session:
             self.book, self.downloaded = book, book.version
             if book.path is not None and self.folder.parent.name.startswith(PREFIX):
                 other = _find_other(self.folder, book.path)
-                note = json.dumps({"path": str(book.path.resolve()), "pid": os.getpid()})
+                note = json.dumps({"path": str(book.path.resolve()), "pid": self.server})
                 with suppress(OSError):  # it only serves a warning
                     (self.folder / NOTE).write_text(note, encoding="utf-8")
                 if other is not None:
@@ -145,13 +102,19 @@ class Session:
         place_files(made, folder)
         return self.take(Book.hold(made.name, made.data, folder))
 
-    def read_model(self, folder: Path, name: str, routes: Routes = "none") -> None:
-        """Read a building model in such a folder; an earlier one that is not opened is dropped."""
+    def read_model(self, sent: Path | bytes, name: str, routes: Routes = "none") -> None:
+        """Read a building model, which is removed then; an earlier one that is not opened is dropped."""
+        slots = Slots(self.folder.parent, "models", self.limits.models, READING)
         with self.lock:
             if self.reading is not None:
                 self.reading.close()
             self.reading = None
-            self.reading = Import(folder, name, routes, self.reading_slots)
+            folder = self.make_folder(FOLDER)
+            if isinstance(sent, Path):
+                sent.rename(folder / SOURCE)
+            else:
+                (folder / SOURCE).write_bytes(sent)
+            self.reading = Import(folder, name, routes, slots)
 
     def cancel_import(self) -> None:
         """End the reading of a building model, or drop what was read."""
@@ -179,7 +142,8 @@ class Session:
             if self.book is None:
                 raise RequestError(fill("No workbook is open."), NOT_FOUND)
             self.check_room(0)
-            new = Job(self.book, body, self.folder, self.slots)
+            slots = Slots(self.folder.parent, "simulations", self.limits.simulations, BUSY)
+            new = Job(self.book, body, self.folder, slots)
             if self.job is not None:
                 self.job.close()
             self.job = new
@@ -202,12 +166,11 @@ class Session:
                 shutil.rmtree(folder, ignore_errors=True)
 
     def close(self) -> None:
-        """End its job and remove its folder."""
+        """End its job and the reading of a building model."""
         with self.lock:
             self.drop_book()
             if self.reading is not None:
                 self.reading.close()
-        shutil.rmtree(self.folder, ignore_errors=True)
 
 
 def _find_other(session: Path, workbook: Path) -> int | None:
@@ -221,67 +184,3 @@ def _find_other(session: Path, workbook: Path) -> int | None:
             if Path(found["path"]).samefile(workbook) and not is_left(folder):
                 return int(found["pid"])
     return None
-
-
-def _is_same(one: str, other: str) -> bool:
-    return bool(other) and hmac.compare_digest(one.encode("utf-8", "replace"), other.encode())
-
-
-class Keys:
-    """The sessions, and who may come in.
-
-    Without a `header` there is one session; whoever opens the address with a ticket first gets its cookie. Else every
-    user whom a proxy names in that header has a session, and the page gets its cookie at the entrance.
-    """
-
-    def __init__(self, header: str, port: int, make: Callable[[], Session], limits: Limits = HOSTED) -> None:
-        self.cookie, self._ticket = f"{COOKIE}-{port}", ""
-        self._header, self._make, self._limits = header, make, limits
-        self._sessions: dict[str, Session] = {} if header else {"": make()}
-        self._lock = threading.Lock()
-
-    def issue(self) -> str:
-        """Return a new ticket; an earlier one is void."""
-        with self._lock:
-            self._ticket = secrets.token_urlsafe(32)
-            return self._ticket
-
-    def _name(self, visit: HTTPConnection) -> str:
-        """Return the user; blank where the header is missing, or there twice: then it is not the proxy's alone."""
-        values = visit.headers.getlist(self._header) if self._header else []
-        name = values[0].encode("latin-1").decode("utf-8", "replace").strip() if len(values) == 1 else ""
-        return name if len(name) <= LONGEST_USER else ""
-
-    def find(self, visit: HTTPConnection) -> Session | None:
-        """Return the session of the user where the cookie is its own."""
-        session = self._sessions.get(self._name(visit))
-        return session if session and _is_same(visit.cookies.get(self.cookie, ""), session.key) else None
-
-    def admit(self, visit: HTTPConnection) -> Session | None:
-        """Return the session of a ticket, void from then on, or of a user who opens the page, new if there is room."""
-        user, path = self._name(visit), visit.scope["path"]
-        with self._lock:
-            if not self._header:
-                if path != ENTRANCE or not _is_same(visit.query_params.get("t", ""), self._ticket):
-                    return None
-                self._ticket = ""
-            elif path != "/" or not user:
-                return None
-            if user not in self._sessions:
-                if len(self._sessions) >= self._limits.sessions:
-                    raise RequestError(fill("Too many users have a workbook open. Try again later."), TOO_MANY)
-                self._sessions[user] = self._make()
-            return self._sessions[user]
-
-    def sessions(self) -> Sequence[Session]:
-        """Return all sessions."""
-        with self._lock:
-            return tuple(self._sessions.values())
-
-    def expire(self, now: float) -> None:
-        """End the sessions whose users have asked for nothing for too long; what they held is thrown away."""
-        with self._lock:
-            idle = [user for user, one in self._sessions.items() if now - one.seen > self._limits.idle]
-            ended = [self._sessions.pop(user) for user in idle]
-        for session in ended:
-            session.close()

@@ -21,10 +21,15 @@ def write_house(path):
 
 
 def find_worker(server, name):
-    """Return the process of a server that runs a module, 0 where there is none."""
-    pid = server.pid
-    children = "".join(path.read_text() for path in Path(f"/proc/{pid}/task").glob("*/children")).split()
-    return next((int(child) for child in children if _runs(child, name)), 0)
+    """Return the process of a server, or of its sessions, that runs a module, 0 where there is none."""
+    return next((child for child in list_children(server.pid) if _runs(child, name)), 0)
+
+
+def list_children(pid):
+    """Yield the processes that a process has started, and those that they have."""
+    for child in "".join(path.read_text() for path in Path(f"/proc/{pid}/task").glob("*/children")).split():
+        yield int(child)
+        yield from list_children(child)
 
 
 def _runs(pid, name):

@@ -14,9 +14,9 @@ from threading import Event, Thread, Timer
 from urllib.parse import quote, urlsplit
 
 from assess.delivery.folders import private_folder
-from assess.web.book import Book
+from assess.web.limits import PREFIX
 from assess.web.server import Place, Server, bind
-from assess.web.sessions import PREFIX
+from assess.web.worker import Worker
 from tests.waiting import PATIENCE, wait_until
 
 ADDRESS = re.compile(r"https?://\S+")
@@ -129,14 +129,23 @@ def start(*words, cwd, temporary=None, environment=None, before=()):
     raise AssertionError(f"no address was printed, exit status {process.returncode}: {err}")
 
 
+class LocalWorker(Worker):
+    """What answers the requests of a session, in this process."""
+
+    is_gone = False
+
+    def kill(self):
+        """Do nothing: it ends with the tests."""
+
+
 @contextmanager
 def serve_here(workbook, cwd):
     """Serve a workbook, or none, as `assess open` does, in a thread: what a process imports is here already."""
     place, ready = Place(), Event()
     with bind(place) as listening, private_folder(PREFIX) as folder:
-        server = Server(listening, place, folder, cwd)
+        server = Server(listening, place, folder, cwd, LocalWorker)
         if workbook is not None:
-            server.take(Book.open_disk(Path(workbook)))
+            server.open(Path(workbook))
         thread = Thread(target=server.run, args=((), ready.set))
         thread.start()
         try:

@@ -156,7 +156,7 @@ def test_what_is_too_large_cannot_be_read_or_is_no_workbook_is_refused(client):
     assert client.request("POST", "/api/edit", b"x" * (33 * 2**20)).status == 413
     assert client.request("POST", "/api/upload?name=a.xlsx", iter([b"x" * 2**20] * 70)).status == 413  # in pieces
     assert client.request("POST", "/api/upload?name=a.xlsx", b"x" * (65 * 2**20)).status == 413
-    for body in (b"{", b"[]", b"1", b"\xff", b'{"a": NaN}', b'{"a": 1e999}', b"[" * 100_000, b'{"a": "\\ud800"}',
+    for body in (b"{", b"[]", b"1", b"\xff", b'{"a": NaN}', b'{"a": 1e999}', b"[" * 60_000, b'{"a": "\\ud800"}',
                  b'{"a": ' + b"9" * 5000 + b"}"):  # fmt: skip
         reply = client.request("POST", "/api/what-if", body)
         assert (reply.status, reply.json()["message"]) == (400, "The request cannot be read."), body[:20]

@@ -10,11 +10,10 @@ import assess
 from assess.bim.import_workbook import ImportedBuilding
 from assess.web import importing
 from assess.web.file_names import clean_name
-from assess.web.guard import MOST_MODEL
-from assess.web.importing import Import, find_free, name_workbook
-from assess.web.jobs import READING, Slots
+from assess.web.importing import READING, Import, find_free, name_workbook
+from assess.web.limits import HOSTED, MOST_MODEL
 from assess.web.request_errors import RequestError
-from assess.web.sessions import HOSTED
+from assess.web.slots import Slots
 from assess.workbook.read import read_tables
 from tests.bim import scan_files
 from tests.bim.cobie_files import write_cobie
@@ -54,7 +53,8 @@ def _begin_sending(client, length, data):
 
 
 def _list_left(tmp_path):
-    return list_named(tmp_path / "tmp", "import-")
+    """Return what is kept of models: as they are sent, as they are read."""
+    return [name for kind in ("body-", "import-") for name in list_named(tmp_path / "tmp", kind)]
 
 
 @pytest.mark.slow
@@ -172,11 +172,11 @@ def test_a_reading_ends_where_it_is_cancelled_replaced_or_the_server_ends(served
 @pytest.mark.slow
 def test_one_model_is_sent_at_a_time_and_a_client_that_goes_away_leaves_nothing(served, tmp_path):
     client = served().client
-    with _begin_sending(client, "Content-Length: 100000", b"x" * 1000):
+    with _begin_sending(client, "Content-Length: 4000000", b"x" * 2_000_000):
         wait_until(lambda: _list_left(tmp_path), len)
     wait_until(lambda: _list_left(tmp_path), lambda left: left == [])
     assert client.get("/api/import").json()["import"] is None
-    with _begin_sending(client, "Transfer-Encoding: chunked", b"3e8\r\n" + b"x" * 1000 + b"\r\n"):
+    with _begin_sending(client, "Transfer-Encoding: chunked", b"1e8480\r\n" + b"x" * 2_000_000 + b"\r\n"):
         wait_until(lambda: _list_left(tmp_path), len)
         reply = client.request("POST", "/api/import?name=b.ifc", b"x")
         assert (reply.status, reply.json()["message"]) == (
@@ -256,12 +256,14 @@ def test_plans_workbooks_and_models_get_names_that_nothing_else_has(tmp_path):
 
 
 def test_without_a_place_nothing_is_kept_and_a_reading_for_which_nobody_asks_ends(tmp_path, monkeypatch):
-    slots = Slots(1, READING)
-    slots.take()
+    (folder := tmp_path / "server").mkdir()
+    slots = Slots(folder, "models", 1, READING)
+    taken = slots.take()
     with pytest.raises(RequestError, match="Other building models are being read"):
         _begin(tmp_path, slots)
-    assert list(tmp_path.iterdir()) == []
+    assert list(tmp_path.iterdir()) == [folder]
+    taken.release()
     monkeypatch.setattr(importing, "LEFT_AFTER", -1.0)
-    found = _begin(tmp_path, Slots(1), DUPLEX.read_bytes())
+    found = _begin(tmp_path, slots, DUPLEX.read_bytes())
     wait_until(lambda: found.state, lambda state: state != "running")
-    assert (found.state, list(tmp_path.iterdir())) == ("cancelled", [])
+    assert (found.state, list(tmp_path.iterdir())) == ("cancelled", [folder])

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
-from assess.web.guard import MOST_MODEL
+from assess.web.limits import MOST_MODEL
 from tests.bim import scan_files
 from tests.waiting import wait_until
 from tests.web.looking import examine

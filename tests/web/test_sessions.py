@@ -6,8 +6,10 @@ from pathlib import Path
 import pytest
 from starlette.requests import HTTPConnection
 
+from assess.web.limits import Limits
 from assess.web.request_errors import RequestError
-from assess.web.sessions import Keys, Limits, Session
+from assess.web.sessions import Session
+from assess.web.users import Keys, User
 from tests.web.serving import Client, wait_for_job
 from tests.workbooks import write
 
@@ -73,13 +75,13 @@ def test_neither_a_cookie_nor_a_name_alone_lets_anyone_in(served):
     assert list((server.folder).iterdir()) == []
 
 
+def _start(_folder):
+    raise NotImplementedError
+
+
 @pytest.fixture
 def make(tmp_path):
-    def make(limits=None):
-        folder = Path(tempfile.mkdtemp(dir=tmp_path))
-        return Session(f"key of {folder.name}", folder, limits=limits or Limits())
-
-    return make
+    return lambda: User(Path(tempfile.mkdtemp(dir=tmp_path)), _start)
 
 
 def _visit(user, cookie=""):
@@ -95,7 +97,7 @@ def test_a_name_that_comes_twice_is_not_the_proxys_and_sessions_and_their_files_
     session = keys.admit(_visit("ann"))
     assert keys.find(_visit("ann", session.key)) is session
     assert keys.find(_visit(("ann", "ann"), session.key)) is None
-    keys = Keys("X-User", 80, make, Limits(sessions=2, idle=100.0))
+    keys = Keys("X-User", 80, make, Limits(users=2, idle=100.0))
     ann, ben = (keys.admit(_visit(user)) for user in ("ann", "ben"))
     with pytest.raises(RequestError, match="Too many users") as found:
         keys.admit(_visit("cat"))
@@ -103,18 +105,18 @@ def test_a_name_that_comes_twice_is_not_the_proxys_and_sessions_and_their_files_
     (ann.folder / "file").write_bytes(b"x")
     ben.seen = ann.seen + 60
     keys.expire(ann.seen + 101)
-    assert keys.sessions() == (ben,)
+    assert keys.users() == (ben,)
     assert not ann.folder.exists()
     assert keys.find(_visit("ann", ann.key)) is None
     assert keys.admit(_visit("cat")) is not None
     data = write(tmp_path / "w.xlsx").read_bytes()
-    session = make(Limits(bytes=3 * len(data)))
-    session.hold("w.xlsx", data)
-    (session.folder / "more").write_bytes(data)
-    (session.book.folder / "plan.png").write_bytes(data)
+    own = Session(Path(tempfile.mkdtemp(dir=tmp_path)), limits=Limits(bytes=3 * len(data)))
+    own.hold("w.xlsx", data)
+    (own.folder / "more").write_bytes(data)
+    (own.book.folder / "plan.png").write_bytes(data)
     with pytest.raises(RequestError, match="have more than") as found:
-        session.hold("other.xlsx", data * 2)
+        own.hold("other.xlsx", data * 2)
     assert found.value.status == 429
-    assert session.book.name == "w.xlsx"
-    session.hold("again.xlsx", data)  # in place of the first, whose folder is removed
-    assert len(list(session.folder.glob("files-*"))) == 1
+    assert own.book.name == "w.xlsx"
+    own.hold("again.xlsx", data)  # in place of the first, whose folder is removed
+    assert len(list(own.folder.glob("files-*"))) == 1

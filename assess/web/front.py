@@ -1,0 +1,214 @@
+"""What the server does with a request that has come through the guard: its turn, its body, the process that answers it.
+
+Nothing here works for long: what takes time is done in threads of the session's own, or in its process.
+"""
+
+import asyncio
+import logging
+import secrets
+import time
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from dataclasses import replace
+from pathlib import Path
+
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.types import Receive, Scope, Send
+
+from assess.i18n import fill, load_catalogue, speaking
+from assess.web.assets import answer_asset, find_asset
+from assess.web.frames import Call, Reply
+from assess.web.guard import READING, SESSION, read_parts, skip_body
+from assess.web.limits import MODELS, MOST, SMALL, Limits, check_room, check_size, find_room
+from assess.web.request_errors import (
+    BAD_REQUEST,
+    NOT_FOUND,
+    TIMEOUT,
+    TOO_MANY,
+    UNAVAILABLE,
+    WRONG_METHOD,
+    RequestError,
+    describe_fault,
+)
+from assess.web.texts import COOKIE, choose_language
+from assess.web.users import User
+from assess.web.workers import WorkerGoneError
+
+LOG = logging.getLogger("assess.web")
+API = "/api/"
+POLLED = ("/api/state", "/api/job", MODELS)
+"""What a page asks by itself: it is not its user who asks."""
+AT_ONCE = ("/api/edit", "/api/undo", "/api/redo", "/api/job/cancel", "/api/import/cancel")
+"""What takes no time, and does not wait for what does."""
+MOST_WAITING = 20
+"""Requests of a session that wait for their turn."""
+PART = 2**20
+"""Bytes that are written at once."""
+SENDING = fill("Another building model is being sent. Wait until it has been received, then try again.")
+
+
+class Front:
+    """Answers requests: files of the page here, all others in the process of their session. Plain ASGI."""
+
+    def __init__(self, limits: Limits) -> None:
+        self._limits = limits
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request."""
+        request, user = Request(scope, receive), scope[SESSION]
+        try:
+            response = await self._answer(request, user)
+        except Exception as error:
+            if not isinstance(error, RequestError | OSError):
+                LOG.exception("a request failed")
+            response = _refuse(request, user, error)
+        await response(scope, receive, send)
+
+    async def _answer(self, request: Request, user: User) -> Response:
+        path: str = request.scope["path"]
+        if not path.startswith(API):
+            if request.method not in READING:
+                raise RequestError(fill("This address does not answer to that method."), WRONG_METHOD)
+            found = await user.run(find_asset, path.removeprefix("/"))
+            if found is None:
+                raise RequestError(fill("There is nothing at this address."), NOT_FOUND)
+            return answer_asset(found, request.headers, request.query_params.get("v", ""))
+        if path not in POLLED or request.method not in READING:
+            user.seen = time.monotonic()
+        async with _turn(user, path):
+            call = await self._receive(request, user)
+            try:
+                reply = await self._ask(user, call)
+            finally:
+                if call.file:
+                    Path(call.file).unlink(missing_ok=True)
+        user.language = reply.language
+        response = Response(reply.data, reply.status)
+        response.raw_headers = [(name.encode("latin-1"), value.encode("latin-1")) for name, value in reply.headers]
+        return response
+
+    async def _ask(self, user: User, call: Call) -> Reply:
+        """Return the answer of the process of a session; one that ends meanwhile is started again, and asked again."""
+        for _ in range(2):
+            async with user.starting:
+                link = user.link
+                if link is None or link.is_gone:
+                    link = user.link = await user.run(user.start, user.folder)
+            asked = asyncio.ensure_future(user.run(link.ask, call))
+            seconds = self._limits.seconds
+            done, _late = await asyncio.wait({asked}, timeout=seconds if seconds < float("inf") else None)
+            if not done:
+                link.kill()
+                asked.add_done_callback(lambda found: found.exception())  # it is known that there is none
+                text = fill("It takes more than {seconds:.0f} s, which is the limit here.", seconds=seconds)
+                raise RequestError(text, UNAVAILABLE)
+            with suppress(WorkerGoneError):
+                return asked.result()
+        raise RequestError(
+            fill("The program behind your workbook ended unexpectedly; memory may have run out."), UNAVAILABLE
+        )
+
+    # ------------------------------------------------------------ bodies
+
+    async def _receive(self, request: Request, user: User) -> Call:
+        """Return a request with its body, or with the file of the session that holds it."""
+        path, cookies = request.scope["path"], request.cookies
+        method = "GET" if request.method in READING else request.method
+        accepted, encoding = (request.headers.get(f"accept-{one}", "")[:200] for one in ("language", "encoding"))
+        chosen = cookies.get(COOKIE, "")[:10]
+        call = Call(method, path, dict(request.query_params), chosen=chosen, accepted=accepted, encoding=encoding)
+        is_model = path == MODELS and method == "POST"
+        if method == "GET":
+            return call
+        if is_model and user.is_sending:
+            await skip_body(request.receive, self._limits.silence)
+            raise RequestError(SENDING, TOO_MANY)
+        user.is_sending |= is_model
+        body = _Body(user, MOST.get(path, SMALL), self._limits)
+        try:
+            await body.read(request)
+        except BaseException:
+            body.drop()
+            raise
+        finally:
+            user.is_sending &= not is_model
+        return replace(call, data=bytes(body.held), file=str(body.path or ""))
+
+
+class _Body:
+    """The body of a request: what is larger than `SMALL` is written to a file, as long as the session has room."""
+
+    def __init__(self, user: User, most: int, limits: Limits) -> None:
+        self._user, self._most, self._limits = user, most, limits
+        self._room = float("inf")
+        self.held = bytearray()
+        self.path: Path | None = None
+        self._size = 0
+
+    async def read(self, request: Request) -> None:
+        """Read it to its end, so that the browser gets to the answer; RequestError if it is too large."""
+        silence, length = self._limits.silence, request.headers.get("content-length", "0")  # not every request has it
+        try:
+            await self._check(int(length))
+            async for part in read_parts(request.receive, silence):
+                await self._take(part)
+            if self.path is not None:
+                await self._write(self.path)
+        except RequestError as error:
+            if error.status not in (BAD_REQUEST, TIMEOUT):
+                await skip_body(request.receive, silence, self._size)
+            raise
+
+    async def _check(self, size: int) -> None:
+        check_size(size, self._most)
+        if size > SMALL and self._room == float("inf"):
+            self._room = await self._user.run(find_room, self._user.folder, self._limits)
+        check_room(size, self._room, self._limits)
+
+    async def _take(self, part: bytes) -> None:
+        self._size += len(part)
+        await self._check(self._size)
+        self.held += part
+        if self._size > SMALL and self.path is None:
+            self.path = self._user.folder / f"body-{secrets.token_hex(8)}"
+        if len(self.held) > PART and self.path is not None:
+            await self._write(self.path)
+
+    async def _write(self, path: Path) -> None:
+        def write(data: bytes) -> None:
+            with path.open("ab") as file:
+                file.write(data)
+
+        data = bytes(self.held)
+        self.held.clear()
+        await self._user.run(write, data)
+
+    def drop(self) -> None:
+        """Remove its file."""
+        if self.path is not None:
+            self.path.unlink(missing_ok=True)
+
+
+@asynccontextmanager
+async def _turn(user: User, path: str) -> AsyncIterator[None]:
+    """Wait for the turn of a request; RequestError where too many wait already."""
+    places = user.at_once if path in AT_ONCE else user.in_work
+    if user.waiting >= MOST_WAITING:
+        raise RequestError(fill("Too many requests at once. Try again in a moment."), TOO_MANY)
+    user.waiting += 1
+    try:
+        await places.acquire()
+    finally:
+        user.waiting -= 1
+    try:
+        yield
+    finally:
+        places.release()
+
+
+def _refuse(request: Request, user: User, error: Exception) -> Response:
+    code = choose_language(request.cookies.get(COOKIE, ""), user.language, request.headers.get("accept-language", ""))
+    with speaking(load_catalogue(code)):
+        status, body = describe_fault(error)
+    return JSONResponse(body, status, {"connection": "close"} if status == TIMEOUT else None)
