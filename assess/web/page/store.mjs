@@ -243,7 +243,7 @@ class Store extends EventTarget {
     }
     const lines = refused.slice(0, NAMED).map(([name, row, at, why]) => `${cellName(this.sheet(name), row, at)}: ${why}`);
     if (refused.length > NAMED) lines.push(tn("{n} more", "{n} more", refused.length - NAMED, { n: refused.length - NAMED }));
-    notice(`${t("Not changed, because cells cannot be changed:")} ${lines.join("; ")}`, { kind: "error" });
+    notice(t("Not changed: {cell}", { cell: lines.join("; ") }), { kind: "error" });
   }
 
   /** Read the book again where the server has another version, and explain what of the changes that wait is lost. */

@@ -87,7 +87,7 @@ export class Tabs {
   }
 
   #explain(root) {
-    const again = el("button", { type: "button", text: t("Load the page again"), on: { click: () => location.reload() } });
+    const again = el("button", { type: "button", text: t("Reload the page"), on: { click: () => location.reload() } });
     const text = t("This view could not be shown. Nothing of the workbook is lost, and the other views work.");
     clear(root).append(el("div", { class: "page-like" }, el("p", { role: "alert", text }), el("div", { class: "buttons" }, again)));
   }

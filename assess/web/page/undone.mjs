@@ -21,8 +21,8 @@ export function undoneLine(store) {
 
 function describe(store, { isUndo, cells }) {
   const n = cells.length;
-  if (n > 1) return isUndo ? tn("Undone: {n:,} cell", "Undone: {n:,} cells", n) : tn("Done again: {n:,} cell", "Done again: {n:,} cells", n);
+  if (n > 1) return isUndo ? tn("Undone: {n:,} cell", "Undone: {n:,} cells", n) : tn("Redone: {n:,} cell", "Redone: {n:,} cells", n);
   const [name, row, at] = cells[0];
   const cell = cellName(store.sheet(name), row, at);
-  return isUndo ? t("Undone: {cell}", { cell }) : t("Done again: {cell}", { cell });
+  return isUndo ? t("Undone: {cell}", { cell }) : t("Redone: {cell}", { cell });
 }

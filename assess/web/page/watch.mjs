@@ -93,7 +93,7 @@ export class Watch extends EventTarget {
     if (this.#notices.outside || (!unsaved && this.#unread < UNREAD_LOOKS)) return;
     const { name } = this.#store.book;
     const text = unsaved
-      ? t("{name} was changed by another program, such as Excel, while you changed it here. Both are kept: your last changes are in this page, the other ones in the file. Download your version to keep yours, or read the file again to go on without them.", { name })
+      ? t("{name} was changed by another program, such as Excel, while you edited it here. Nothing is lost yet: your edits are in this page, the other changes in the file. Download your version to keep your edits, or read the file again to discard them.", { name })
       : t("{name} was changed by another program and cannot be read as it is now. The page shows what it held before.", { name });
     const actions = [[t("Download my version"), () => download()], [t("Read the file again"), () => this.#reload()]];
     this.#notices.outside = notice(text, { kind: unsaved ? "info" : "error", actions, key: "outside", lasting: true });
@@ -126,7 +126,7 @@ export class Watch extends EventTarget {
     this.dispatchEvent(new Event("connection"));
     const name = this.#store.book?.mode === "disk" ? this.#store.book.name : "";
     const command = `assess open ${name.includes(" ") ? `"${name}"` : name} --port ${location.port || 80}`.replace("  ", " ");
-    const text = t("The program behind this page does not answer. Start it again: {command}. What you change meanwhile is kept in this page, and sent when it answers.", { command });
+    const text = t("The program behind this page does not answer. Start it again: {command}. Changes made meanwhile are kept in this page and sent as soon as it answers.", { command });
     this.#notices.gone = notice(text, { kind: "error", key: "gone", lasting: true });
   }
 
@@ -142,7 +142,7 @@ export class Watch extends EventTarget {
     if (this.#isStranger) return;
     this.isGone = this.#isStranger = true;
     this.dispatchEvent(new Event("connection"));
-    const text = t("This window is no longer connected, as the program was started again. Use the window that it opened, or open the address that it printed.");
+    const text = t("The program was restarted, and this window is no longer connected. Use the window that it opened, or open the address that it printed.");
     this.#notices.gone = notice(text, { kind: "error", key: "gone", lasting: true });
   }
 }
