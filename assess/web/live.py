@@ -23,6 +23,7 @@ from assess.risk import RiskClass, classify_all
 from assess.units import GRAVITY, LENGTH, VELOCITY
 from assess.web.evaluation import Evaluation, evaluate, list_floors
 from assess.web.fixes import Fixes
+from assess.web.request_errors import say_sentence
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.habits import list_groups
 from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
@@ -128,7 +129,7 @@ def _describe_state(snapshot: "Snapshot") -> _State:
             fault = describe_failure(snapshot.problems, found)
         except AssessError as error:
             found = Evaluation(None, frozenset(key(one.floor) for one in inventory.floors), ())
-            fault = gettext(error.message)
+            fault = say_sentence(error.message)
         rows = list_rows(snapshot.tables, inventory, found, columns.values())
         problems = describe_problems((*snapshot.problems, *found.problems), inventory.sheets, Fixes(snapshot))
         demands, floors = {} if found.assessment is None else found.assessment.demands, []
@@ -146,7 +147,7 @@ def describe_failure(problems: Sequence[Problem], found: Evaluation) -> str:
     if found.assessment is not None:
         return ""
     why = [*found.problems, *(one for one in problems if isinstance(one, Gap) and one.severity == "error")]
-    return " ".join(gettext(one.message) for one in dict.fromkeys(why[:MOST_NAMED]))
+    return " ".join(say_sentence(one.message) for one in dict.fromkeys(why[:MOST_NAMED]))
 
 
 def list_rows(
@@ -270,9 +271,9 @@ def describe_problems(
         row, at = found[0][0] if found else (None, None)
         described.append({
             "severity": shown.severity, "sheet": sheet, "cell": shown.cell, "row": row, "at": at,
-            "message": gettext(shown.message), "fix": gettext(shown.fix), "count": len(alike),
+            "message": say_sentence(shown.message), "fix": say_sentence(shown.fix), "count": len(alike),
             "cells": [cell for cell, _ in found],
-            "own": [(gettext(one.message), gettext(one.fix)) for _, one in found] if len(alike) > 1 else [],
+            "own": [(say_sentence(one.message), say_sentence(one.fix)) for _, one in found] if len(alike) > 1 else [],
             "lacks": shown.lacks if isinstance(shown, Gap) else "",
             "actions": fixes.find(sheet, found) if fixes and found and len(described) < MOST_PROBLEMS else [],
         })  # fmt: skip

@@ -37,7 +37,13 @@ def describe_fault(error: Exception) -> tuple[int, dict[str, Any]]:
 
 
 def _say(message: str, fix: str = "") -> dict[str, Any]:
-    return {"message": gettext(message), "fix": gettext(fix), "problems": []}
+    return {"message": say_sentence(message), "fix": say_sentence(fix), "problems": []}
+
+
+def say_sentence(text: str) -> str:
+    """Return a text in the language in use, with a capital: elsewhere messages follow a place and a colon."""
+    said = gettext(text)
+    return f"{said[:1].upper()}{said[1:]}"
 
 
 def describe_problem(problem: Problem) -> dict[str, Any]:
@@ -46,6 +52,6 @@ def describe_problem(problem: Problem) -> dict[str, Any]:
         "severity": problem.severity,
         "sheet": problem.sheet,
         "cell": problem.cell,
-        "message": gettext(problem.message),
-        "fix": gettext(problem.fix),
+        "message": say_sentence(problem.message),
+        "fix": say_sentence(problem.fix),
     }

@@ -55,7 +55,7 @@ ROWS = {"Floors": 100, "Items": 200, "Places": 200, "Routes": 200, "Catalogue": 
 RUN_ASSESS = "run assess"
 """What the live columns show of a floor whose motion only the program computes: from a record, by interpolation, by a
 code's profile."""
-NO_SHAKING = "shaking?"
+NO_SHAKING = "needs shaking"
 """What they show of a floor that nothing serves: `assess run` would name it in an error."""
 NO_UNIT = "unit?"
 """What they show where the bracket of a header holds no unit that is known."""

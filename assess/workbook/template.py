@@ -51,18 +51,18 @@ FIRST_LINES = (
     "The classes: ○ low below {low:g} %, ◇ medium below {medium:g} %, ▲ high below {high:g} %, ■ very high from "
     "{high:g} % chance of overturning in this scenario, not per year. A * behind a class: outside the range in which "
     "the formula was checked by tests.",
-    "Words in place of a class: shaking?: nothing tells how the floor shakes: fill in its PFA, or choose Shaking in "
-    "Building. run assess: assess run works out the motion of the floor, from a record, from other floors or from the"
-    " ground. check: a cell holds a text, or a number out of range, or Breadth is above Width: nothing is computed "
+    "Words in place of a class: needs shaking: nothing tells how the floor shakes: fill in its PFA, or choose Shaking "
+    "in Building. run assess: assess run works out the motion of the floor, from a record, from other floors or from "
+    "the ground. check: a cell holds a text, or a number out of range, or Breadth is above Width: nothing is computed "
     "with it here; assess check tells which cell, and its option fix writes a copy in which such cells are corrected "
     "where they can be read in one way only. floor?, axis?, type?, unit?: the floor, the axis, the type or the unit "
     "of a header is not known.",
 )
 CLASS_NOTE = (
     "Computed by Excel from this row, by the formula that Class by in Building chooses. {mark} behind a class: outside "
-    "the range in which the formula was checked. shaking?: nothing tells how the floor shakes. run assess: only assess "
-    "run can tell. check: a cell holds a text, or a number out of range; assess check tells which, and may take it "
-    "all the same."
+    "the range in which the formula was checked. needs shaking: nothing tells how the floor shakes. run assess: only "
+    "assess run can tell. check: a cell holds a text, or a number out of range; assess check tells which, and may "
+    "take it all the same."
 )
 ROCK_NOTE = (
     "Whether the piece can start to rock in an earthquake like this one, if it is as strong as is taken into account "
@@ -237,7 +237,7 @@ class _Writer:
     def _write_live(self, page: Any) -> None:
         for label in (*LIVE, *WORKINGS):
             at = PLACES[ITEMS.name, label]
-            self._write_head(page, at, translate_header(label), _LIVE_WIDTHS.get(label, 10), None, is_live=True)
+            self._write_head(page, at, translate_header(label), _LIVE_WIDTHS.get(label, 13), None, is_live=True)
         page.write_comment(
             0, PLACES[ITEMS.name, CLASS], gettext(CLASS_NOTE, mark=OUTSIDE), {"x_scale": 3, "y_scale": 1.6}
         )

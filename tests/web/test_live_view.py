@@ -90,7 +90,7 @@ def test_a_row_without_a_class_has_the_word_of_the_class_column(tmp_path, langua
     for at, (risk, word) in words.items():
         assert (word if not risk else shown[at]) == shown[at], (at, slips[at - 3] if 2 < at < 12 else "")
     assert (words[2][0], shown[2]) == ("high", {"en": "▲ high", "it": "▲ alto"}[language])
-    assert words[max(words)][1] == {"en": "shaking?", "it": "scuotimento?"}[language]
+    assert words[max(words)][1] == {"en": "needs shaking", "it": "manca il moto"}[language]
 
 
 def test_floors_without_shaking_leave_the_others_their_classes_and_changes_make_up_the_whole(tmp_path):
@@ -100,13 +100,13 @@ def test_floors_without_shaking_leave_the_others_their_classes_and_changes_make_
     answer = _answer(book)
     found = _classes(answer)
     assert {row: found[row] for row in (2, 3)} == {row: whole[row] for row in (2, 3)}
-    assert [found[row][1] for row in (4, 5, 6)] == ["shaking?", "anchored", "shaking?"]
+    assert [found[row][1] for row in (4, 5, 6)] == ["needs shaking", "anchored", "needs shaking"]
     assert answer["error"] == ""
     assert [one["lacks"] for one in answer["problems"] if one["severity"] == "error"] == ["shaking"]
     edit(book, ("Floors", 2, "pfa_x", None), ("Floors", 2, "pfa_y", None), ("Floors", 2, "pfv_x", None),
          ("Floors", 2, "pfv_y", None))  # fmt: skip
     answer = _answer(book)
-    assert "floor '1'" in answer["error"]
+    assert "Floor '1'" in answer["error"]
     assert answer["counts"] == {"low": 0, "medium": 0, "high": 0, "very_high": 0, "": 7}
     book, view = hold(write(tmp_path / "w.xlsx")), LiveView()
     first = _answer(book, view)

@@ -71,7 +71,7 @@ def test_scenarios_that_cannot_be_served_and_wrong_requests_say_why_and_a_faulty
     book = hold(write(tmp_path / "w.xlsx"))
     answer = _try(book, scenario="NTC 2018", scale=2)
     assert "Ground PGA, SDS, ShakeMap file and Shaking are blank" in answer["error"]
-    assert {word for _, word, _ in _items(answer["after"]).values()} == {"shaking?", "anchored"}
+    assert {word for _, word, _ in _items(answer["after"]).values()} == {"needs shaking", "anchored"}
     answer = _try(book, scenario="recorded", anchor=["A1"])
     assert "'1' has no record" in answer["error"]
     assert _items(answer["after"])[2] == ("", "anchored", None)

@@ -96,7 +96,7 @@ def test_without_shaking_the_live_columns_tell_the_slenderness(tmp_path):
     types = {row["type"]: row["breadth"] / row["height"] for row in read_catalogue()}
     named = [row["type"] for row in room_content("Hospital").rows["Items"]]
     assert [row[0] for row in shown] == [pytest.approx(types[name], rel=1e-3) for name in named]
-    assert all(set(row[1:]) == {"shaking?"} for row in shown)
+    assert all(set(row[1:]) == {"needs shaking"} for row in shown)
     computed = by_formualizer(poison(path))
     for at, row in enumerate(shown, 2):
         assert computed[at] == [pytest.approx(row[0], abs=AGREEMENT), *row[1:]]

@@ -236,18 +236,18 @@ WORDS: Sequence[Any] = [
     ({}, [{"floor": "1", "record_y": "  ", "pfa_x": 0.5}], [({}, 0.5)]),
     *(({"scenario_kind": kind}, RECORDED, [({}, shown)]) for kind, shown in {
         "given": 0.5, " GIVEN": 0.5, "recorded": "run assess", "as filled": "run assess", "As_Filled": "run assess",
-        "ASCE 7-22": "shaking?", "en 1998-1": "shaking?",
+        "ASCE 7-22": "needs shaking", "en 1998-1": "needs shaking",
     }.items()),
     *(({}, [{"floor": "1", "pfa_x": 0.5, "pfv_x": pfv}], [({}, "check")]) for pfv in ("1,5", 0, -20, 2000)),
     # cells that were emptied with the space bar
     ({}, TWO, [({"breadth": 40, "width": " ", "angle_deg": " ", "axis": " ", "type": " ", "centre_of_gravity": " "}, 0.5)]),
 ]  # fmt: skip
 ITALIAN_WORDS: Sequence[Any] = [
-    ({}, TWO, [({"floor": "9"}, "piano?"), ({"axis": "Z"}, "asse?"), ({}, 0.5), ({"floor": "2"}, "scuotimento?")]),
+    ({}, TWO, [({"floor": "9"}, "piano?"), ({"axis": "Z"}, "asse?"), ({}, 0.5), ({"floor": "2"}, "manca il moto")]),
     ({"ground_pga": 0.2}, TWO, [({"floor": "2"}, "eseguire assess")]),
     *(({"scenario_kind": kind}, TWO, [({}, shown)]) for kind, shown in {
-        " REGISTRATO": "scuotimento?", "Assegnato": 0.5, "given": 0.5, "come-compilato": 0.5, "as filled": 0.5,
-        "NTC 2018": "scuotimento?",
+        " REGISTRATO": "manca il moto", "Assegnato": 0.5, "given": 0.5, "come-compilato": 0.5, "as filled": 0.5,
+        "NTC 2018": "manca il moto",
     }.items()),
 ]  # fmt: skip
 
@@ -287,23 +287,23 @@ def test_no_such_type_and_texts_for_numbers_show_no_class_and_a_breadth_up_to_th
 
 
 UNSERVED: list[tuple[dict[str, Any], dict[str, Any], str | None]] = [
-    ({}, {}, "shaking?"), ({"elevation": 4}, {}, "shaking?"), ({"pfv_x": 30}, {}, "shaking?"),
-    ({"record_x": " "}, {}, "shaking?"), ({"elevation": 4}, {"ground_pga": 0.2}, None),
+    ({}, {}, "needs shaking"), ({"elevation": 4}, {}, "needs shaking"), ({"pfv_x": 30}, {}, "needs shaking"),
+    ({"record_x": " "}, {}, "needs shaking"), ({"elevation": 4}, {"ground_pga": 0.2}, None),
     ({"elevation": 4}, {"sds": 0.5}, None), ({"elevation": 4}, {"ground_pgv": 20}, None),
     ({"elevation": 4}, {"ground_pga": 0.2, "scenario_kind": "as filled"}, None),
-    ({"elevation": 4}, {"ground_pga": 0.2, "scenario_kind": "given"}, "shaking?"),
-    ({"elevation": 4}, {"shaking": "MMI VII, very strong", "scenario_kind": "recorded"}, "shaking?"),
+    ({"elevation": 4}, {"ground_pga": 0.2, "scenario_kind": "given"}, "needs shaking"),
+    ({"elevation": 4}, {"shaking": "MMI VII, very strong", "scenario_kind": "recorded"}, "needs shaking"),
     ({"elevation": 4}, {"ground_pga": 0.2, "scenario_kind": "NTC 2018"}, "run assess"),
     ({"elevation": 4}, {"ground_pgv": 20, "scenario_kind": "NTC 2018"}, "run assess"),
     ({"elevation": 4}, {"shaking": "JMA 7", "scenario_kind": "EN 1998-1"}, "run assess"),
-    ({"elevation": 4}, {"scenario_kind": "EN 1998-1"}, "shaking?"),
-    ({"pfa_x": 0.5}, {"scenario_kind": "EN 1998-1"}, "shaking?"),
+    ({"elevation": 4}, {"scenario_kind": "EN 1998-1"}, "needs shaking"),
+    ({"pfa_x": 0.5}, {"scenario_kind": "EN 1998-1"}, "needs shaking"),
     ({}, {"ground_pga": 0.2}, None), ({}, {"shaking": "JMA 7"}, None), ({}, {"ground_pgv": 20, "height": 9}, None),
-    ({}, {"ground_pga": 0.2, "scenario_kind": "EN 1998-1"}, "shaking?"),
+    ({}, {"ground_pga": 0.2, "scenario_kind": "EN 1998-1"}, "needs shaking"),
     ({}, {"ground_pga": 0.2, "storeys": 3, "scenario_kind": "EN 1998-1"}, "run assess"),
     ({}, {"ground_pga": 0.2, "height": 9, "storeys": 3}, "run assess"), ({}, {"sds": 0.5, "storeys": 3}, "run assess"),
-    ({}, {"height": 9, "storeys": 3}, "shaking?"), ({}, {"shaking": "JMA 7", "height": 9}, None),
-    ({}, {"shaking": "JMA 7", "height": 9, "storeys": 3, "scenario_kind": "given"}, "shaking?"),
+    ({}, {"height": 9, "storeys": 3}, "needs shaking"), ({}, {"shaking": "JMA 7", "height": 9}, None),
+    ({}, {"shaking": "JMA 7", "height": 9, "storeys": 3, "scenario_kind": "given"}, "needs shaking"),
 ]  # fmt: skip
 
 
@@ -313,7 +313,7 @@ def test_what_a_floor_without_a_motion_of_its_own_shows(tmp_path: Path) -> None:
         (shown,) = shown_rows(tmp_path, [{}], [{"floor": "1", **floor}], **building)
         assert isinstance(shown[1], float) if word is None else shown[1:] == [word] * 7, (floor, building)
         if floor.keys() <= {"elevation", "pfa_x"}:
-            assert is_run(tmp_path / "book.xlsx") == (word != "shaking?"), (floor, building)
+            assert is_run(tmp_path / "book.xlsx") == (word != "needs shaking"), (floor, building)
 
 
 def is_run(path: Path) -> bool:
@@ -345,7 +345,7 @@ def test_a_floor_beside_others_is_left_to_the_program_where_that_serves_it(tmp_p
     for elevations, z, kind in BESIDE:
         path = floors_beside(tmp_path / "book.xlsx", elevations, z, kind)
         (word,) = set(by_formualizer(poison(path))[2][1:])
-        assert word == ("run assess" if is_run(path) else "shaking?"), (elevations, z, kind)
+        assert word == ("run assess" if is_run(path) else "needs shaking"), (elevations, z, kind)
         words.append(word)
     assert len(set(words)) == 2
 
@@ -588,7 +588,7 @@ def test_an_unreadable_unit_of_ground_velocity_shows_no_class(tmp_path: Path, pg
 
 def test_floors_without_a_motion_or_a_name_show_no_class_and_those_beside_them_keep_theirs(tmp_path: Path) -> None:
     """They may be interpolated, which is the program's task."""
-    assert shown_rows(tmp_path, [{}], scenario_kind="recorded")[0][1:] == ["shaking?"] * 7
+    assert shown_rows(tmp_path, [{}], scenario_kind="recorded")[0][1:] == ["needs shaking"] * 7
     floors: Rows = [{"floor": "1", "pfa_x": 0.5, "elevation": 4}, *({"floor": f"r{z}", "elevation": z} for z in (0, 8))]
     between = [floors[0], *({**floor, "record_x": "roof.csv"} for floor in floors[1:])]
     (tmp_path / "between").mkdir()
@@ -596,7 +596,7 @@ def test_floors_without_a_motion_or_a_name_show_no_class_and_those_beside_them_k
     # Rows without a name are no floors, whatever else they hold; nor is a blank name theirs.
     floors = [{"floor": "1", "elevation": 4}, {"pfa_x": 0.3, "elevation": 0}, {"pfa_x": 0.3, "elevation": 8}]
     named, blank = shown_rows(tmp_path, [{}, {"floor": None}], floors)
-    assert (named[1:], blank[1:]) == (["shaking?"] * 7, ["floor?"] * 7)
+    assert (named[1:], blank[1:]) == (["needs shaking"] * 7, ["floor?"] * 7)
     floors = [{"floor": "0", "elevation": 0}, {"floor": "1", "pfa_x": 0.5, "elevation": 4}]
     assert shown_rows(tmp_path, [{}], floors, ground_pga=0.2)[0][1] == 0.5
 
@@ -631,11 +631,11 @@ def test_what_is_anchored_says_so_without_shaking_and_a_typed_capacity_is_left_t
     ]  # fmt: skip
     (tmp_path / "none").mkdir()
     assert shown_rows(tmp_path / "none", [{"anchored": "yes"}], [{"floor": "1"}])[0][1:] == [
-        *["shaking?"] * 4, *["anchored"] * 2, "shaking?",
+        *["needs shaking"] * 4, *["anchored"] * 2, "needs shaking",
     ]  # fmt: skip
     held = {"anchored": "yes", "bracket_capacity": 2.0}
     assert shown_rows(tmp_path, [held], [{"floor": "1"}])[0][1:] == [
-        *["shaking?"] * 4, *["run assess"] * 2, "shaking?",
+        *["needs shaking"] * 4, *["run assess"] * 2, "needs shaking",
     ]  # fmt: skip
     unshaken = without_shaking(Content({"Items": [{"item": "A1", "floor": "1", "breadth": 40, "height": 180, **held}],
                                         "Floors": [{"floor": "1"}], "Building": [{}]}))  # fmt: skip

@@ -305,7 +305,7 @@ def test_a_wrong_elevation_own_motions_alone_and_a_shakemap_show_no_class(tmp_pa
             assert shown["1"][1:] == ["check"] * 7, z
     for kind in ("given", "recorded"):
         shown = show(tmp_path, FLOORS[:3], shaking="MMI VII, very strong", scenario_kind=kind)
-        assert [one[1:] for one in shown.values()] == [["shaking?"] * 7] * 3, kind
+        assert [one[1:] for one in shown.values()] == [["needs shaking"] * 7] * 3, kind
     for more in ({}, {"shaking": "MMI IV, light"}, {"ground_pgv": 20}):
         shown = show(tmp_path, FLOORS, **PLACED | more)
         assert [one[1:] for one in shown.values()] == [["run assess"] * 7] * len(FLOORS), more
