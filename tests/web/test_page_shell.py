@@ -166,7 +166,7 @@ def test_language_and_colours_are_kept_and_percentages_stay_on_their_side_of_a_l
     assert shown == ["2.999 %", "3.0 %", "69.996 %", "–", "100.0 %", "0.0 %"]
     found.get_by_label("Language of the page").select_option("it")
     expect(found.get_by_role("link", name="Foglio", exact=True)).to_be_visible()
-    expect(found.locator(STATE)).to_have_text("Tutte le modifiche sono salvate")
+    expect(found.locator(STATE)).to_have_text("Modifiche salvate")
     assert found.locator("html").get_attribute("lang") == "it"
     numbers = found.evaluate("""async () => {
         const { number, percent, t } = await import("/texts.mjs");
