@@ -276,7 +276,7 @@ class Item:
     notes: str = ""
     assumed: tuple[str, ...] = ()
     extra: tuple[str, ...] = ()
-    more: Mapping[str, Any] = field(default_factory=dict)
+    more: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
     @property
     def is_scanned(self) -> bool:

@@ -1,7 +1,7 @@
 """What methods are evaluated on: a batch of cases, the motions of their floors, and what a simulation finds of both."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol, Self
 
@@ -44,6 +44,10 @@ class Ensemble(Protocol):
     @property
     def record(self) -> tuple[FloatArray, float] | None:
         """The recorded motion (n,) [m/s2] and its time step [s], where one is known."""
+
+    @property
+    def key(self) -> Hashable:
+        """All that its motions, and the record, depend on."""
 
     def open(self, threads: int, progress: Progress = SILENT) -> "Motions":
         """Prepare the motions; their memory is released with the result."""

@@ -23,7 +23,6 @@ this one, of a piece like this one: see `assess.rocking.draws`.
 """
 
 import math
-from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -32,7 +31,7 @@ from numpy.typing import NDArray
 
 from assess.arrays import BoolArray, FloatArray, IntArray
 from assess.i18n import Text, fill, nfill
-from assess.methods.cases import NO_WALL, Alike, Cases, Joint
+from assess.methods.cases import NO_WALL, Alike, Cases, Ensemble, Joint
 from assess.methods.expression import number, show
 from assess.methods.method import Column, Example, Method, Outcome, Reason, Reference
 from assess.methods.simulate import (
@@ -45,6 +44,7 @@ from assess.methods.simulate import (
     rock_draws,
     run_side_by_side,
 )
+from assess.methods.verdicts import Verdicts
 from assess.progress import SILENT, Stage
 from assess.risk import classify_all, wilson_end, wilson_interval
 from assess.rocking.block import MIDDLE
@@ -73,8 +73,14 @@ FLAGS = ("shenton_extended", "wall_higher", "assumed_motion", "unknown_building"
 """Flags that are, after `fell_in_record`."""
 
 
-def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage | None = None) -> Outcome:
-    """Integrate the cases that have an ensemble, each of which is one part of `stage`; the others have no value."""
+def evaluate(
+    cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage | None = None, verdicts: Verdicts | None = None
+) -> Outcome:
+    """Integrate the cases that have an ensemble, each of which is one part of `stage`; the others have no value.
+
+    With `verdicts`, which hold all of those cases, nothing is integrated: slip, walls and how far pieces turn are left
+    out, which change no chance.
+    """
     known = (cases.ensemble >= 0) & ~cases.is_stocky & ~np.isnan(cases.threshold)
     owns = [(number, np.flatnonzero(known & (cases.ensemble == number))) for number in range(len(cases.ensembles))]
     owns = [(number, own) for number, own in owns if own.size or (cases.slides_under == number).any()]
@@ -88,19 +94,22 @@ def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage
     found["shenton_extended"] = (way != UNKNOWN) & is_outside_shenton(cases.centre)
 
     work = partial(_integrate, cases, settings, stage, max(1, threads // max(1, side_by_side)))
-    for joint, parts in run_side_by_side(work, owns, side_by_side):
+    done = run_side_by_side(work, owns, side_by_side)
+    if verdicts is not None:
+        done = (_recall(cases, settings, verdicts, *one) for one in owns if one[1].size)
+    for joint, parts in done:
         joints += [joint] if joint.cases.size else []
         for own, values in parts:
             for name, one in values.items():
                 found[name][..., own] = one
-    runs, draws, done, assumed = found["runs"], found["draws"], found["runs"] > 0, found["assumed_motion"]
+    runs, draws, has_run, assumed = found["runs"], found["draws"], found["runs"] > 0, found["assumed_motion"]
     fallen, share, low, high = _count(found["fallen"], runs, draws, settings)
     exact = runs if settings.ideal else np.where(assumed, 0, runs)  # what is drawn cannot recur
     ideal = _count(found["ideal"], exact, exact, settings)
     tried = [_count(one, runs, draws, settings)[1] for one in found["tried"]]
     detail = {
-        "runs": np.where(done, runs, np.nan),
-        "draws": np.where(done, draws, np.nan),
+        "runs": np.where(has_run, runs, np.nan),
+        "draws": np.where(has_run, draws, np.nan),
         "overturned": fallen,
         "low": low,
         "high": high,
@@ -109,7 +118,7 @@ def evaluate(cases: Cases, settings: Settings, *, threads: int = 1, stage: Stage
         **{name: found[name] for name in AS_FOUND},
     }
     open_low, open_high = ideal[2:] if settings.ideal else (low, high)
-    undecided = done & (settings.runs == AUTO) & (classify_all(open_low) != classify_all(open_high))
+    undecided = has_run & (settings.runs == AUTO) & (classify_all(open_low) != classify_all(open_high))
     flags = {"fell_in_record": found["record_overturned"] == 1, **{name: found[name] for name in FLAGS}}
     return Outcome(share, detail, {**flags, "does_not_rock": cases.is_stocky, "undecided": undecided}, tuple(joints))
 
@@ -177,12 +186,8 @@ def _integrate(
         fit=motions.fit, spectra=motions.spectra and motions.spectra.first(last), is_weak=motions.is_weak,
         bands=motions.bands,
     )  # fmt: skip
-    slower, faster = _find_thirds(counted, runs, speeds, alike)
-    found: dict[str, Any] = {
-        "runs": runs, "draws": runs * alike.total, "fallen": alike.add_up(fell.sum(axis=1)),
-        "ideal": ideal.sum(axis=1), "tried": alike.add_up(tried), "if_slower": slower, "if_faster": faster,
-        "assumed_motion": is_drawn, "unknown_building": ensemble.is_unknown, "weak_motions": joint.is_weak,
-    }  # fmt: skip
+    every = np.concatenate(speeds) if speeds else np.zeros(0)
+    found = {**_sum_up(joint, ensemble, counted, alike, every), "tried": alike.add_up(tried)}
     if ensemble.record is not None and count:
         motion, time_step = ensemble.record
         under, angle = rock_cases(cases, own, motion[np.newaxis], time_step, threads, progress)
@@ -190,12 +195,37 @@ def _integrate(
     return joint, [(own, found), *extras.find(counted, has_wall, alike)]
 
 
+def _recall(
+    cases: Cases, settings: Settings, verdicts: Verdicts, number: int, own: NDArray[np.intp]
+) -> tuple[Joint, list[tuple[NDArray[np.intp], dict[str, Any]]]]:
+    """Return what `_integrate` does of the cases `own` of an ensemble, from what is kept of them."""
+    known, ensemble = verdicts.recall(cases, number, own, settings), cases.ensembles[number]
+    joint = Joint(
+        ensemble=number, cases=own, runs=np.full(own.size, int(settings.runs)), fell=known.fell, ideal=known.ideal,
+        rotation=np.zeros((0, 0), dtype=np.float32), examples=(), fit=None, is_weak=known.is_weak,
+    )  # fmt: skip
+    alike, every = Alike.of(cases.alike[own], cases.quantity[own]), known.speeds
+    counted = known.ideal if settings.ideal else known.fell
+    found = _sum_up(joint, ensemble, counted, alike, np.zeros(0) if every is None else every)
+    record = dict(zip(("record_overturned", "record_rotation"), known.record.T, strict=True))
+    return joint, [(own, {**found, **record})]
+
+
+def _sum_up(joint: Joint, ensemble: Ensemble, counted: BoolArray, alike: Alike, speeds: FloatArray) -> dict[str, Any]:
+    """Return what follows from the draws of the cases of an ensemble, whose motions have PFV/PFA `speeds` [s]."""
+    slower, faster = _find_thirds(counted, joint.runs, speeds, alike)
+    return {
+        "runs": joint.runs, "draws": joint.runs * alike.total, "fallen": alike.add_up(joint.fell.sum(axis=1)),
+        "ideal": joint.ideal.sum(axis=1), "if_slower": slower, "if_faster": faster,
+        "assumed_motion": ensemble.is_assumed, "unknown_building": ensemble.is_unknown, "weak_motions": joint.is_weak,
+    }  # fmt: skip
+
+
 def _find_thirds(
-    fell: BoolArray, runs: NDArray[np.int64], speeds: Sequence[FloatArray], alike: Alike
+    fell: BoolArray, runs: NDArray[np.int64], every: FloatArray, alike: Alike
 ) -> tuple[FloatArray, FloatArray]:
     """Return the chances (m,) in the third of the draws with the least PFV/PFA and in that with the most; else NaN."""
     found = np.full((2, len(runs)), np.nan)
-    every = np.concatenate(speeds) if speeds else np.zeros(0)
     for count in np.unique(runs[runs > 0]).tolist() if every.size else ():
         order = np.argsort(every[:count], kind="stable")
         own, third = runs == count, max(1, count // 3)

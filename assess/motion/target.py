@@ -115,6 +115,11 @@ class Target:
     envelopes: Envelopes
     acceleration: FloatArray
 
+    @property
+    def nbytes(self) -> int:
+        """Bytes."""
+        return self.envelopes.values.nbytes + self.acceleration.nbytes + 2 * self.periods.nbytes
+
     def ordinates(self, periods: FloatArray, time_step: float = TIME_STEP) -> FloatArray:
         """Return the record's pseudo-acceleration [m/s2] at other periods [s]; `time_step` [s] is that of the grid."""
         from assess.motion.spectrum import response_spectrum

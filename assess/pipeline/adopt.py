@@ -263,6 +263,7 @@ class Assessment:
     * `either_axis`: of each piece that may topple along both axes, in which draws it does along either.
     * `governing`, `held` (items,): index of each item's governing case, and which items count as anchored.
     * `annual`: annual chances; None where the workbook names no hazard file.
+    * `lacking`: the cases with the motions under which they are still to be rocked; None where nothing is.
     """
 
     inventory: Inventory
@@ -283,6 +284,20 @@ class Assessment:
     obstructions: "Sequence[Obstructions]"
     problems: tuple[Problem, ...]
     annual: Annual | None = None
+    lacking: Cases | None = None
+
+    @property
+    def formula(self) -> Method:
+        """The formula whose class is adopted of a piece that is not simulated."""
+        return adopted_formula(self.settings.class_by)
+
+    @property
+    def waits(self) -> BoolArray:
+        """Which items (m,) go by the formula until they are rocked."""
+        found = np.zeros(len(self.inventory.items), dtype=np.bool_)
+        if self.lacking is not None:
+            found[self.case_item[self.lacking.ensemble >= 0]] = True
+        return found
 
     @property
     def joints(self) -> Mapping[Demand, Joint]:

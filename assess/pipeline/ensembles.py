@@ -13,9 +13,9 @@ for itself, as they are made at different places of it; a sign is found where tw
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,7 +23,8 @@ import numpy as np
 from assess.arrays import FloatArray
 from assess.methods import Motions
 from assess.model import NEAR_AXIS, Building, angle_between
-from assess.motion.record import Motion, Record, treat
+from assess.motion.kept import Kept
+from assess.motion.record import Record, treat
 from assess.motion.rows import GROUP
 from assess.pipeline.demand import Demand, Demands, Drawn
 from assess.progress import SILENT, Progress
@@ -34,6 +35,13 @@ if TYPE_CHECKING:
 
 WEAK_PFA, WEAK_PFV = 0.9, 0.85
 """Shares of the floor's PFA and PFV [-]: motions whose own are lower on average may not lower a class."""
+TARGETS: "Kept[Target]" = Kept(48_000_000)
+"""Targets of records, which further motions of the same floor ask for: those of a minute take some 1 million bytes."""
+
+
+def _identify(demand: Demand) -> tuple[Hashable, ...]:
+    """Return what tells the recorded motion of a floor from others."""
+    return demand.record or demand.motion, demand.scale, demand.axis
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,6 +64,11 @@ class GeneratedEnsemble:
         """The recorded motion as treated [m/s2], and its time step [s]."""
         return self.demand.recorded
 
+    @property
+    def key(self) -> Hashable:
+        """All that the motions depend on."""
+        return (*_identify(self.demand), self.grid, self.seed, self.signs)
+
     def build_target(self) -> "Target":
         """Return what the motions are to match, but for their scale: the record as it is."""
         from assess.motion.target import recorded_target
@@ -63,8 +76,10 @@ class GeneratedEnsemble:
         demand = self.demand
         if demand.motion is None:
             raise ValueError(f"floor {demand.floor.floor} has no record")
-        own = demand.motion if demand.record is None or demand.scale == 1.0 else treat(demand.record)
-        return recorded_target(own, self.grid)
+        if demand.record is None:
+            return recorded_target(demand.motion, self.grid)
+        record = demand.record
+        return TARGETS.find_or_make((record, self.grid), lambda: recorded_target(treat(record), self.grid))
 
     def open(self, threads: int, progress: Progress = SILENT) -> Motions:
         """Find the filter and the corrections that meet the target; the motions are in single precision."""
@@ -100,6 +115,13 @@ class DrawnEnsemble:
         """Whether nothing is known of the building, nor of the floor's height."""
         return self.drawn.is_unknown
 
+    @property
+    def key(self) -> Hashable:
+        """All that the motions depend on."""
+        drawn = self.drawn
+        ground = drawn.record and _identify(drawn.record)
+        return drawn.building, drawn.ground, ground, drawn.target, self.demand.axis, self.grid, self.seed, self.signs
+
     def open(self, threads: int, progress: Progress = SILENT) -> Motions:
         """Find what brings the draws to the floor's peaks; the motions are in single precision."""
         from assess.motion.beam import Beams, open_floor
@@ -131,6 +153,11 @@ class SuiteEnsemble:
     is_assumed: bool = False
     is_unknown: bool = False
     signs: tuple[int, ...] | None = None
+
+    @property
+    def key(self) -> Hashable:
+        """All that the motions depend on."""
+        return self.suite, self.demand.pfa if self.is_scaled else self.factor, self.demand.motion, self.demand.axis
 
     @property
     def peaks(self) -> tuple[float, float]:
@@ -203,8 +230,8 @@ def build_ensembles(
 
 
 _HUNDREDTHS = re.compile(r":\d\d\.\d\d")
-_Recorded = tuple[Demand, float | None, Motion]
-"""A floor motion, the azimuth of its record [deg], and its record as treated."""
+_Recorded = tuple[Demand, float | None]
+"""A recorded floor motion, and the azimuth of its record [deg]."""
 
 
 def find_phase_signs(
@@ -222,7 +249,7 @@ def find_phase_signs(
     for one in demands:
         if one.record is not None and one.motion is not None and not one.is_borrowed:
             key = one.axis, find_clock(one.name, one.record)
-            groups.setdefault(key, []).append((one, one.record.azimuth_deg, one.motion))
+            groups.setdefault(key, []).append((one, one.record.azimuth_deg))
     found: dict[Demand, tuple[int, ...]] = {}
     for (axis, _), group in groups.items():
         found |= _find_signs(group, grid, None if azimuth is None else azimuth + 90 * (axis == "Y"))
@@ -241,7 +268,7 @@ def find_clock(name: str, record: Record) -> tuple[Any, ...]:
 
 def _find_signs(group: Sequence[_Recorded], grid: "Grid", along: float | None) -> dict[Demand, tuple[int, ...]]:
     """Return the signs of records on one clock; nothing where they are not of two floors at least."""
-    known = [(one.pfa, azimuth) for one, azimuth, _ in group if azimuth is not None]
+    known = [(one.pfa, azimuth) for one, azimuth in group if azimuth is not None]
     axis = max(known)[1] if along is None and known else along
 
     def turn(azimuth: float | None) -> int:
@@ -252,12 +279,18 @@ def _find_signs(group: Sequence[_Recorded], grid: "Grid", along: float | None) -
             return 0
         return 1 if math.cos(math.radians(azimuth - axis)) > 0 else -1
 
-    directed = [(one, turn(azimuth), motion) for one, azimuth, motion in group if turn(azimuth)]
-    if len({one.floor.floor for one, _, _ in directed}) < 2:
+    directed = [(one, turn(azimuth)) for one, azimuth in group if turn(azimuth)]
+    if len({one.floor.floor for one, _ in directed}) < 2:
         return {}
+    signs = _find_signs_of(tuple((one.record, sign) for one, sign in directed if one.record), grid)
+    return {one: own for (one, _), own in zip(directed, signs, strict=True)}
+
+
+@lru_cache(maxsize=16)
+def _find_signs_of(records: tuple[tuple[Record, int], ...], grid: "Grid") -> tuple[tuple[int, ...], ...]:
+    """Return the signs of records, each of which points along the axis (1) or against it (-1)."""
     from assess.motion.floor_signs import find_signs
     from assess.motion.target import put_on_grid
 
-    rows = np.stack([sign * put_on_grid(motion, grid) for _, sign, motion in directed])
-    signs = find_signs(rows, grid.time_step).tolist()
-    return {one: tuple(own) for (one, _, _), own in zip(directed, signs, strict=True)}
+    rows = np.stack([sign * put_on_grid(treat(record), grid) for record, sign in records])
+    return tuple(map(tuple, find_signs(rows, grid.time_step).tolist()))

@@ -16,6 +16,7 @@ from assess.delivery.folders import make_folder, remove_folder
 from assess.errors import InputError, OutputError
 from assess.i18n import fill
 from assess.methods import NO_WALL, SIDE_UNKNOWN, Cases, Method, all_methods, simulation
+from assess.methods.verdicts import Verdicts
 from assess.model import AXES, Inventory
 from assess.pipeline.adopt import (
     UNCONFIRMED,
@@ -43,6 +44,7 @@ from assess.settings import CLASS_BY, SCENARIOS, Settings, change_settings
 
 if TYPE_CHECKING:
     from assess.motion.suite import Suite
+    from assess.routes.evaluate import KeptRoutes
     from assess.routes.obstructions import Obstructions
 
 NO_SERIES = Path("no-series")
@@ -104,9 +106,13 @@ def run(
 
 def compute(
     inventory: Inventory, settings: Settings, *, suite: "Suite | None" = None, methods: Sequence[Method] = (),
-    jobs: int | None = None, progress: Progress = SILENT,
+    jobs: int | None = None, progress: Progress = SILENT, verdicts: Verdicts | None = None,
 ) -> Assessment:  # fmt: skip
-    """Return the arrays of a run; parameters and errors are those of `run`."""
+    """Return the arrays of a run; parameters and errors are those of `run`.
+
+    With `verdicts` nothing is rocked: a piece of which they know all motions is simulated, any other goes by the
+    formula until it is; `Assessment.lacking` tells which cases are to be rocked.
+    """
     every = (*all_methods(), *methods)  # in the order of reports
     for name in (fill("key"), fill("title")):
         taken = [str(getattr(one, name)) for one in every]
@@ -120,7 +126,7 @@ def compute(
     if isinstance(settings.anchor, tuple):
         names = spell_names(inventory, settings.anchor)
         settings, inventory = replace(settings, anchor=names), anchor_named(inventory, names)
-    assessment = progress.wait_for(lambda: _compute(inventory, settings, suite, every, jobs, progress))
+    assessment = progress.wait_for(lambda: _compute(inventory, settings, suite, every, jobs, progress, verdicts))
     if isinstance(settings.anchor, int):
         schedule = build_results(assessment, figures=False, progress=progress).schedule
         assessment = anchor_first(assessment, schedule.rows)
@@ -134,7 +140,7 @@ def compute(
 
 def _compute(
     inventory: Inventory, settings: Settings, suite: "Suite | None", every: tuple[Method, ...], jobs: int | None,
-    progress: Progress,
+    progress: Progress, verdicts: Verdicts | None,
 ) -> Assessment:  # fmt: skip
     scenario = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     filled = build_demands(inventory, scenario, ductility_reduction=settings.ductility_reduction, progress=progress)
@@ -153,7 +159,14 @@ def _compute(
     outcomes = {one.key: one.evaluate(cases, settings) for one in every if one.tier == "screening"}
     chosen = choose_items(settings.verify, every, outcomes, case_item, on_route)
     cases = choose_motions(cases, chosen[case_item], case_demand, demands, inventory, settings, suite)
-    simulated = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress)
+    lacking = None
+    if verdicts is not None:
+        is_open = (cases.ensemble >= 0) & ~verdicts.find_known(cases, settings)
+        waits = np.zeros(len(inventory.items), dtype=np.bool_)
+        waits[case_item[is_open]] = True
+        lacking = replace(cases, ensemble=np.where(is_open, cases.ensemble, -1))
+        cases = replace(cases, ensemble=np.where(waits[case_item], -1, cases.ensemble))
+    simulated = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress, verdicts=verdicts)
     outcomes[simulation().key] = simulated
     adoption = adopt(outcomes, cases, settings)
     adoption, both = unite_axes(adoption, outcomes, cases, inventory, case_item, case_demand, settings)
@@ -169,7 +182,7 @@ def _compute(
         methods=every, cases=cases, case_item=case_item, case_demand=case_demand, outcomes=outcomes, adoption=adoption,
         either_axis=both, governing=governing,
         held=find_held(inventory, cases.pfa[governing], find_spread(cases)[governing]), obstructions=obstructions,
-        problems=(*inventory.problems, *map(inventory.place, remarks)),
+        problems=(*inventory.problems, *map(inventory.place, remarks)), lacking=lacking,
     )  # fmt: skip
 
 
@@ -270,13 +283,15 @@ def _pair(
     return column((at for at, _, _ in pairs), np.intp), case_demand, cases
 
 
-def evaluate_route_tables(assessment: Assessment, progress: Progress, held: Collection[int] = ()) -> RouteTables:
-    """Return the routes, with further pieces (indices) held."""
+def evaluate_route_tables(
+    assessment: Assessment, progress: Progress, held: Collection[int] = (), kept: "KeptRoutes | None" = None
+) -> RouteTables:
+    """Return the routes, with further pieces (indices) held; `kept` holds the rows of an evaluation before."""
     inventory, settings = assessment.inventory, assessment.settings
     if not inventory.routes:
         return RouteTables(risk=settings.route_risk)
     from assess.routes.evaluate import evaluate_routes
 
     falls = assessment.find_falls(held)
-    found = evaluate_routes(inventory, assessment.obstructions, falls, settings, progress=progress)
+    found = evaluate_routes(inventory, assessment.obstructions, falls, settings, progress=progress, kept=kept)
     return found if assessment.annual is None or held else add_annual(found, assessment.annual.ways)

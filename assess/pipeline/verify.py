@@ -17,6 +17,7 @@ from assess.errors import InputError, Problem
 from assess.i18n import count, fill, join
 from assess.methods import Alike, Cases, Joint, Motions, Outcome, adopted_formula, simulation
 from assess.methods.simulate import LOOKS, make_batches, may_slide, rock_cases, rock_draws, run_side_by_side
+from assess.methods.verdicts import Verdicts
 from assess.model import Inventory
 from assess.motion.assumed import RATIO_SCATTER
 from assess.motion.floor_medians import SCATTER
@@ -97,9 +98,9 @@ def remark_suite(suite: "Suite | None", cases: Cases) -> list[Problem]:
 
 def verify(
     cases: Cases, case_item: NDArray[np.intp], case_demand: tuple[Demand, ...], settings: Settings, *,
-    jobs: int | None = None, progress: Progress = SILENT,
+    jobs: int | None = None, progress: Progress = SILENT, verdicts: Verdicts | None = None,
 ) -> Outcome:  # fmt: skip
-    """Integrate the cases that have motions; `jobs` threads, one for each processor by default.
+    """Integrate the cases that have motions, or find them in `verdicts`; `jobs` threads, one for each processor.
 
     Raises CancelledError if the caller stops the work; InputError if the results would need too much memory.
     """
@@ -108,8 +109,8 @@ def verify(
     rows = len(set(case_item[chosen].tolist()))
     floors = len({case_demand[one].floor.floor for one in np.flatnonzero(chosen)})
     evaluate, threads, parts = simulation().evaluate, jobs or count_processors(), len(cases.ensembles)
-    if not rows:
-        return evaluate(cases, settings)
+    if not rows or verdicts is not None:
+        return evaluate(cases, settings, verdicts=verdicts)
     with progress.stage("verification", describe_work(rows, floors), parts) as stage:
         return evaluate(cases, settings, threads=threads, stage=stage)
 

@@ -4,7 +4,7 @@ Ways through rooms in which no furniture is listed count as free of it: `find_un
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from operator import itemgetter
@@ -46,21 +46,62 @@ UNKNOWN = 0.5
 """Chance of a segment that is not evaluated or not known, for the choice of the safest way only [-]."""
 
 
+class KeptRoutes:
+    """The rows of segments, routes and rooms of an evaluation, for the next one of the same network.
+
+    A row is the same as long as its segments are, and what reaches them or may reach them falls as it did.
+    """
+
+    def __init__(self) -> None:
+        self._of: Hashable = None
+        self._rows: dict[Hashable, Any] = {}
+        self._now: dict[Hashable, Any] = {}
+
+    def begin(self, of: Hashable) -> None:
+        """Begin an evaluation; `of` is what all rows rest on. What the last one did not ask for is forgotten."""
+        self._rows, self._now, self._of = self._now if of == self._of else {}, {}, of
+
+    def keep(self, scene: Scene, kind: str, name: Hashable, segments: Iterable[int], make: Callable[[], Any]) -> Any:
+        """Return the row of some segments, made where it is not known."""
+        own = tuple(segments)
+        print_ = tuple((scene.obstructions[at], scene.is_unknown(at), scene.left_out(at)) for at in own)
+        items = {item for item, _ in scene.keys(own, anchors_fail=True)} | {at for *_, left in print_ for at in left}
+        items |= {one.item_index for at in own for one in scene.obstructions[at].pieces}
+        place = kind, name, print_, tuple((at, _fingerprint(scene, at)) for at in sorted(items))
+        if place not in self._now:
+            self._now[place] = self._rows[place] if place in self._rows else make()
+        return self._now[place]
+
+
+def _fingerprint(scene: Scene, item: int) -> tuple[Hashable, ...]:
+    """Return all of a piece on which the rows of segments rest that it may reach."""
+    falls, one = scene.falls, scene.inventory.items[item]
+    fell = falls.fell.get(item)
+    numbers = (falls.probability, falls.high, falls.in_record, falls.stands, falls.anchored, falls.quantity)
+    return (
+        one.item, one.row, one.x is None or one.y is None, falls.unconfirmed.get(item),
+        None if fell is None else fell.tobytes(), *(of[item].tobytes() for of in numbers),
+    )  # fmt: skip
+
+
 def evaluate_routes(
     inventory: Inventory, obstructions: Sequence[Obstructions], falls: Falls, settings: Settings, *,
-    progress: Progress = SILENT,
+    progress: Progress = SILENT, kept: KeptRoutes | None = None,
 ) -> RouteTables:  # fmt: skip
     """Return what is to be expected of the routes of an inventory; nothing where it has none.
 
     `obstructions`: its segments, from `assess.routes.obstructions.find_obstructions`. `falls`: how its pieces fall.
     `settings`: the chosen risk, the seed of draws where combinations of pieces are too many, and the runs, which decide
-    the width of intervals. `progress` receives the stage "routes".
+    the width of intervals. `progress` receives the stage "routes". `kept` holds the rows of the evaluation before.
     """
     if not obstructions:
         return RouteTables(risk=settings.route_risk)
     scene = Scene.of(inventory, obstructions, falls, settings, progress)
     names = list(dict.fromkeys(one.segment.route for one in obstructions))
-    parts = list_rooms(scene)
+    if kept is not None:
+        network = inventory.places, inventory.routes, inventory.floors
+        kept.begin((*network, bool(inventory.items), settings.route_risk, settings.seed, settings.runs))
+    parts = kept.keep(scene, "parts", "", (), partial(list_rooms, scene)) if kept else list_rooms(scene)
     floors = [one.floor for one in inventory.floors]
     steps = len(obstructions) + len(names) + len(parts) + len(floors)
     with progress.stage("routes", f"{count(len(obstructions), 'segment')} of {count(len(names), 'route')}") as stage:
@@ -70,9 +111,17 @@ def evaluate_routes(
             stage.at(next(done) / steps)
             return row
 
-        segments = tuple(step(_segment(scene, at)) for at in range(len(obstructions)))
-        routes = tuple(step(_route(scene, name, segments)) for name in names)
-        rooms = tuple(step(evaluate_room(scene, place, part, segments)) for place, part in parts)
+        def keep(kind: str, name: Hashable, own: Iterable[int], make: Callable[[], Any]) -> Any:
+            return step(make() if kept is None else kept.keep(scene, kind, name, own, make))
+
+        segments = tuple(keep("segment", at, [at], partial(_segment, scene, at)) for at in range(len(obstructions)))
+        routes = tuple(
+            keep("route", name, scene.segments_of(name), partial(_route, scene, name, segments)) for name in names
+        )
+        rooms = tuple(
+            keep("room", place.place, part.segments, partial(evaluate_room, scene, place, part, segments))
+            for place, part in parts
+        )
         by_floor = [step(evaluate_floor(scene, floor, parts, segments, rooms)) for floor in floors]
     by_floor = [one for one in by_floor if one.segments or one.rooms]  # the others have nothing to tell
     known = [one for one in routes if one.state != RouteState.NOT_KNOWN]

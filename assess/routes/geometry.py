@@ -2,15 +2,14 @@
 
 import math
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from assess.model import Inventory, Item
-from assess.progress import SILENT, Progress
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
@@ -58,38 +57,30 @@ class Shape:
     flags: tuple[str, ...]
 
 
-def build_shapes(
-    items: Sequence[Item], floors: Collection[str], progress: Progress = SILENT, *,
-    away: Mapping[int, float | None] = MappingProxyType({}),
-) -> dict[int, Shape]:  # fmt: skip
-    """Return the shapes of the pieces on some floors that have a position, by their index.
+@lru_cache(maxsize=4096)
+def build_shape(item: Item, is_at_wall: bool = False, toward: float | None = None) -> Shape | None:
+    """Return the shape of a piece; None where it has no position.
 
-    `away` holds, of the pieces against a wall, the direction in which each falls [deg]; None: that is not known.
+    `toward` is the direction in which a piece at a wall falls [deg]; None where that is not known.
     """
-    if not floors:
-        return {}
+    if item.x is None or item.y is None:
+        return None
     from shapely import Polygon, union_all
 
-    found = {}
-    for index, item in enumerate(items):
-        progress.check()
-        if item.floor not in floors or item.x is None or item.y is None:
-            continue
-        at, across, turns = (item.x, item.y), item.width or item.breadth, [turn(item)]
-        if item.axis is None and item.angle_deg is None:  # Breadth may lie along either axis
-            turns.append(turn(item) + 90.0)
-        standing = union_all([Polygon(rectangle(at, a, (-item.breadth / 2, item.breadth / 2), across)) for a in turns])
-        ways = [one for a in turns for one in fallen(at, a, item.breadth, across, item.height)]
-        if (toward := away.get(index)) is not None:
-            ways = [ways[0] if abs(angle_apart(toward, turn(item))) < 90 else ways[1]]
-        falls = tuple(Polygon(one) for one in ways)
-        flags = {
-            "direction_unknown": len(turns) > 1, "width_assumed": item.width is None,
-            "wall_side_unknown": index in away and toward is None, "falls_from_wall": toward is not None,
-        }  # fmt: skip
-        known = tuple(flag for flag, holds in flags.items() if holds)
-        found[index] = Shape(standing, falls, union_all([standing, *falls]), known)
-    return found
+    at, across, turns = (item.x, item.y), item.width or item.breadth, [turn(item)]
+    if item.axis is None and item.angle_deg is None:  # Breadth may lie along either axis
+        turns.append(turn(item) + 90.0)
+    standing = union_all([Polygon(rectangle(at, a, (-item.breadth / 2, item.breadth / 2), across)) for a in turns])
+    ways = [one for a in turns for one in fallen(at, a, item.breadth, across, item.height)]
+    if toward is not None:
+        ways = [ways[0] if abs(angle_apart(toward, turn(item))) < 90 else ways[1]]
+    falls = tuple(Polygon(one) for one in ways)
+    flags = {
+        "direction_unknown": len(turns) > 1, "width_assumed": item.width is None,
+        "wall_side_unknown": is_at_wall and toward is None, "falls_from_wall": toward is not None,
+    }  # fmt: skip
+    known = tuple(flag for flag, holds in flags.items() if holds)
+    return Shape(standing, falls, union_all([standing, *falls]), known)
 
 
 def angle_apart(one: float, other: float) -> float:

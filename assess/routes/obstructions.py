@@ -15,8 +15,9 @@ widest gaps. So pieces that face each other count together, and pieces far apart
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import product
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +29,7 @@ from assess.model import Inventory, Item, Segment
 from assess.progress import SILENT, Progress
 from assess.route_results import BesideRow
 from assess.routes.chances import Key, union
-from assess.routes.geometry import Band, Shape, build_bands, build_shapes
+from assess.routes.geometry import Band, Shape, build_bands, build_shape
 from assess.routes.walls import MOST_NAMED, find_walls
 from assess.routes.widths import NARROWER
 from assess.workbook.names import key
@@ -258,57 +259,86 @@ class Obstructions:
 
 
 def find_obstructions(inventory: Inventory, progress: Progress = SILENT) -> tuple[Obstructions, ...]:
-    """Return every segment of the inventory with the pieces that reach it."""
+    """Return every segment of the inventory with the pieces that reach it: the very same where nothing changed."""
     if not inventory.routes:
         return ()
     clear = [one.clear_width or one.required_width or DEFAULT_WIDTH for one in inventory.routes]
-    bands = build_bands(inventory, clear)
-    away = {at: wall.falls_toward for at, wall in find_walls(inventory).items()}
-    shapes = build_shapes(inventory.items, {inventory.routes[at].floor for at in bands}, progress, away=away)
+    bands, walls = build_bands(inventory, clear), find_walls(inventory)
+    pieces = [
+        _Piece(at, item, at in walls, walls[at].falls_toward if at in walls else None)
+        for at, item in enumerate(inventory.items)
+    ]
+    on_plan = {inventory.routes[at].floor for at in bands}
+    shapes = {
+        at: shape
+        for at, one in enumerate(progress.checked(pieces))
+        if one.item.floor in on_plan and (shape := one.shape) is not None
+    }
     progress.check()
     named, near = _find_named(inventory), _find_near(inventory, shapes, bands)
     floors: dict[str, set[str]] = {}
     for place in inventory.places:
         floors.setdefault(place.place, set()).add(place.floor)
-    found = []
-    for at, segment in enumerate(inventory.routes):
-        progress.check()
-        band, covered, others = bands.get(at), dict[int, Coverage](), []
-        for index in near.get(at, ()):
-            if one := _cover_by_plan(index, shapes[index], bands[at]):
-                if is_walled_off(inventory.items[index], segment):
-                    others.append(index)
-                else:
-                    covered[index] = one
-        for index in named.get(at, ()):
-            if one := _cover_by_distance(index, inventory.items[index], clear[at], band, shapes.get(index)):
-                covered[index] = one
-        required = segment.required_width or DEFAULT_WIDTH
-        gaps = build_gaps([one for index in sorted(covered) for one in covered[index].obstacles], clear[at])
-        joins_one_floor = floors.get(segment.start, set()) == floors.get(segment.end, set())
-        flags = {
-            "stair_width_missing": segment.clear_width is None and is_stair(segment),
-            "clear_assumed": segment.clear_width is None and not is_stair(segment),
-            "required_assumed": segment.required_width is None,
-            "own_rooms": band is not None and bool(segment.rooms),
-            "walls_unknown": band is not None and not segment.rooms,
-            "no_plan": band is None and joins_one_floor,
-            "between_floors": band is None and not joins_one_floor,
-        }
-        found.append(
-            Obstructions(
-                segment=segment, clear=clear[at], required=required, band=band,
-                flags=tuple(flag for flag, holds in flags.items() if holds),
-                pieces=tuple(
-                    _describe_piece(index, inventory.items[index], covered[index], clear[at], required)
-                    for index in sorted(covered)
-                ),
-                gaps=gaps,
-                other_rooms=tuple(sorted(others)),
-                standing=gaps.residual(np.zeros(len(gaps.keys), dtype=np.bool_)),
-            )
-        )  # fmt: skip
-    return tuple(found)
+    return tuple(
+        _obstruct(
+            segment, clear[at], bands.get(at), tuple(pieces[one] for one in near.get(at, ())),
+            tuple(pieces[one] for one in named.get(at, ())),
+            floors.get(segment.start, set()) == floors.get(segment.end, set()),
+        )
+        for at, segment in enumerate(progress.checked(inventory.routes))
+    )  # fmt: skip
+
+
+class _Piece(NamedTuple):
+    """A piece by its index; whether it stands at a wall, and in which direction it then falls [deg], where known."""
+
+    at: int
+    item: Item
+    is_at_wall: bool
+    toward: float | None
+
+    @property
+    def shape(self) -> Shape | None:
+        """What it covers on the plan; None where it has no position."""
+        return build_shape(self.item, self.is_at_wall, self.toward)
+
+
+@lru_cache(maxsize=2048)
+def _obstruct(
+    segment: Segment, clear: float, band: Band | None, near: Sequence[_Piece], named: Sequence[_Piece],
+    joins_one_floor: bool,
+) -> Obstructions:  # fmt: skip
+    """Return a segment with the pieces that reach it, of those `near` it on the plan and those that name it."""
+    covered, others, items = dict[int, Coverage](), [], {one.at: one.item for one in (*near, *named)}
+    for piece in near:
+        if band and piece.shape and (one := _cover_by_plan(piece.at, piece.shape, band)):
+            if is_walled_off(piece.item, segment):
+                others.append(piece.at)
+            else:
+                covered[piece.at] = one
+    for piece in named:
+        shape = piece.shape if band else None
+        if one := _cover_by_distance(piece.at, piece.item, clear, band, shape):
+            covered[piece.at] = one
+    required = segment.required_width or DEFAULT_WIDTH
+    gaps = build_gaps([one for index in sorted(covered) for one in covered[index].obstacles], clear)
+    flags = {
+        "stair_width_missing": segment.clear_width is None and is_stair(segment),
+        "clear_assumed": segment.clear_width is None and not is_stair(segment),
+        "required_assumed": segment.required_width is None,
+        "own_rooms": band is not None and bool(segment.rooms),
+        "walls_unknown": band is not None and not segment.rooms,
+        "no_plan": band is None and joins_one_floor,
+        "between_floors": band is None and not joins_one_floor,
+    }
+    return Obstructions(
+        segment=segment, clear=clear, required=required, band=band,
+        flags=tuple(flag for flag, holds in flags.items() if holds),
+        pieces=tuple(
+            _describe_piece(index, items[index], covered[index], clear, required) for index in sorted(covered)
+        ),
+        gaps=gaps, other_rooms=tuple(sorted(others)), standing=gaps.residual(np.zeros(len(gaps.keys), dtype=np.bool_)),
+    )  # fmt: skip
 
 
 def is_walled_off(item: Item, segment: Segment) -> bool:

@@ -8,6 +8,7 @@ no side does, or sides do on both faces, the side of the wall is not known, and 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 from assess.errors import Problem
@@ -65,7 +66,7 @@ def find_walls(inventory: Inventory) -> dict[int, Wall]:
     for place in inventory.places:
         if place.outline:
             by_floor.setdefault(place.floor, []).append(place)
-    edges = {floor: _find_edge([place.outline for place in own]) for floor, own in by_floor.items()}
+    edges = {floor: _find_edge(tuple(place.outline for place in own)) for floor, own in by_floor.items()}
     return {
         at: _find_wall(item, by_floor.get(item.floor, ()), edges.get(item.floor))
         for at, item in enumerate(inventory.items)
@@ -127,7 +128,8 @@ def is_inside(at: Point, outline: Outline) -> bool:
     return sum(crossing > x for crossing in crossings) % 2 == 1
 
 
-def _find_edge(outlines: Sequence[Outline]) -> _Edge:
+@lru_cache(maxsize=64)
+def _find_edge(outlines: tuple[Outline, ...]) -> _Edge:
     """Return the building's edge as far as outlines show it: their sides that lie on the hull of them all."""
     from shapely import MultiPoint, get_coordinates
 

@@ -1,5 +1,6 @@
 """Motions for the tests of methods that integrate: made up, in memory, the same however they are asked for."""
 
+from collections.abc import Hashable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -41,6 +42,11 @@ class MadeUp:
     def record(self) -> tuple[FloatArray, float] | None:
         """The recorded motion, and its time step."""
         return (make_motion(self.seed, 10**6), STEP) if self.has_record else None
+
+    @property
+    def key(self) -> Hashable:
+        """All that the motions depend on."""
+        return self.seed, self.has_record
 
     def open(self, threads: int, progress: Progress = SILENT) -> Motions:
         """Note with how many threads."""

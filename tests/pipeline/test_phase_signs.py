@@ -11,6 +11,7 @@ import assess
 from assess.motion.floor_signs import find_coherence
 from assess.motion.generate import build_generator
 from assess.motion.noise import Phases, draw_bands
+from assess.motion.record import treat
 from assess.motion.rows import GROUP
 from assess.motion.target import Grid, octaves, put_on_grid
 from assess.pipeline.demand import build_demands, scale_demands
@@ -204,9 +205,8 @@ def test_what_shows_a_common_clock():
 
 def turned(demand, azimuth):
     """Return a demand whose record is written down against its direction, at another azimuth."""
-    motion, record = demand.motion, demand.record
-    motion = replace(motion, acceleration=-motion.acceleration)
-    return replace(demand, motion=motion, record=replace(record, azimuth_deg=azimuth))
+    record = replace(demand.record, azimuth_deg=azimuth, acceleration=-demand.record.acceleration)
+    return replace(demand, motion=treat(record), record=record)
 
 
 def test_direction_of_records():
