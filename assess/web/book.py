@@ -18,6 +18,7 @@ from assess.web.columns import PageSheet, find_sheets, find_units, show
 from assess.web.disk_file import ChangedOutsideError, DiskFile, find_hash
 from assess.web.file_names import FILES, add_file, list_missing
 from assess.web.request_errors import CONFLICT, RequestError
+from assess.web.simulating import Simulator
 from assess.web.snapshot import Snapshot
 from assess.workbook.kept_files import KeptFiles
 from assess.workbook.read import open_workbook, parse_workbook
@@ -43,7 +44,7 @@ class Book:
         self.version = 1
         self.opening, self.remark = secrets.token_hex(8), ""
         self._lock, self._saving = RLock(), RLock()  # who needs both takes the one of saving first
-        self._kept = KeptFiles()
+        self._kept, self.simulator = KeptFiles(), Simulator()
         self._save_error, self._changed_outside = "", False
         self._hindrance = file.find_hindrance() if file else ""
         self._take_in(data)
@@ -78,7 +79,8 @@ class Book:
         self._missing: list[dict[str, Any]] | None = None
 
     def _snap(self, workbook: Workbook) -> Snapshot:
-        return Snapshot(self.version, workbook, self.sheets, self.path or Path(self.name), self.folder, self._kept)
+        return Snapshot(self.version, workbook, self.sheets, self.path or Path(self.name), self.folder, self._kept,
+                        self.simulator)  # fmt: skip
 
     # ------------------------------------------------------------ what it is
 

@@ -187,10 +187,10 @@ def _add_file(asked: Asked) -> Answer:
 def _describe_live(asked: Asked) -> Answer:
     from assess.web.live import LiveView
 
-    book, session, text = asked.book, asked.session, asked.query.get("since", "")
+    book, session = asked.book, asked.session
     with session.lock:
         view = session.live = session.live or LiveView()
-    return view.answer(book, int(text) if text.isascii() and text.isdigit() and len(text) < 10 else None)
+    return view.answer(book, asked.query.get("since"))
 
 
 def _evaluate(what: str, asked: Asked) -> Answer:

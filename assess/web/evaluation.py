@@ -1,55 +1,113 @@
-"""One state of a workbook assessed by the formulas: what the page's classes, routes and plans are read from.
+"""One version of a workbook assessed as it stands: the one source of all that the page shows of pieces and routes.
+
+It is what `assess run` finds: every piece simulated. Until a piece has been, it goes by the formula; `Evaluation.waits`
+says so. What has been simulated is kept over the versions of a workbook (`simulating`).
 
 A workbook that is being filled in is rarely whole. Rows with errors have been left out when it was read; floors of
 which the shaking is not known yet are left out here, with what stands on them, so that everything else has its class.
 """
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+import math
+import time
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 from assess.errors import Gap, Problem
+from assess.i18n import gettext
 from assess.model import Inventory
 from assess.pipeline.adopt import Assessment
 from assess.pipeline.demand import serve_floors
-from assess.pipeline.run import compute
+from assess.pipeline.run import compute, evaluate_route_tables
+from assess.progress import SILENT
+from assess.route_results import RouteTables
 from assess.settings import SCENARIOS, Settings
+from assess.web.simulating import Simulation
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Tables, first_row
 
 if TYPE_CHECKING:
     from assess.web.snapshot import Snapshot
 
-BY_FORMULAS = Settings(verify="none")
-"""How the page assesses while one types."""
+AS_RUN = Settings()
+"""How the page assesses: as `assess run` does by itself."""
+LIVE, WHAT_IF = "live", "what-if"
+"""What is simulated: the workbook as it stands before anything else."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Evaluation:
-    """What is known of the pieces of a workbook by the formulas: the assessment of the floors whose motion is known.
+    """What is known of the pieces of a workbook: the assessment of the floors whose motion is known.
 
     `unserved` are the other floors, as names are compared; `problems` tell why, and of motions and walls, but are not
-    those of the reading.
+    those of the reading. `arrived` counts what had been simulated then, `simulation` says how far it is.
     """
 
     assessment: Assessment | None
     unserved: frozenset[str]
     problems: tuple[Problem, ...]
+    arrived: int = 0
+    simulation: Simulation = field(default_factory=Simulation)
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether every piece is simulated that is to be."""
+        return self.simulation.state == "done"
+
+    def describe(self) -> dict[str, Any]:
+        """Return on what it rests, as the page is told: `simulation` of docs/page.md."""
+        one = self.simulation
+        return {"state": one.state, "done": one.done, "of": one.of, "message": gettext(one.message)}
 
 
-def evaluate(snapshot: "Snapshot", settings: Settings = BY_FORMULAS, *, routes: bool = True) -> Evaluation:
+def evaluate(snapshot: "Snapshot", settings: Settings = AS_RUN, *, routes: bool = True) -> Evaluation:
     """Return what is known of a snapshot, without annual chances, and without routes, which no class needs, on demand.
 
-    What follows from the page's own settings is worked out once for all who ask. Raises InputError if a setting does
-    not fit the inventory, as an unknown piece that is to be anchored, or a record is gone.
+    It is worked out once for all who ask, and has the rest simulated. Raises InputError if a setting does not fit the
+    inventory, as an unknown piece that is to be anchored, or a record is gone.
     """
-    inventory = replace(snapshot.inventory, hazard=None)
+    simulator, purpose = snapshot.simulator, LIVE if settings == AS_RUN else WHAT_IF
+    found = _find(snapshot, settings, routes)
+    simulator.want(purpose, (snapshot, settings), found.assessment, lambda: _find(snapshot, settings, False).assessment)
+    return replace(found, simulation=simulator.describe(purpose, found.assessment))
+
+
+def wait_for_simulation(
+    snapshot: "Snapshot", settings: Settings = AS_RUN, *, seconds: float, most: float = math.inf
+) -> None:
+    """Wait for what is lacking, so long at most, where that is not more than `most` cases."""
+    end = time.monotonic() + seconds
+    while (left := end - time.monotonic()) > 0:
+        found = evaluate(snapshot, settings, routes=False)
+        lacking = None if found.assessment is None else found.assessment.lacking
+        if lacking is None or not 0 < (lacking.ensemble >= 0).sum() <= most or found.simulation.state == "failed":
+            return
+        snapshot.simulator.wait(found.arrived, left)
+
+
+def tabulate_routes(snapshot: "Snapshot", found: Evaluation, settings: Settings = AS_RUN) -> RouteTables:
+    """Return the states of routes of an evaluation, once for all who ask: only of what has changed since the last."""
+    if found.assessment is None or not found.assessment.obstructions:
+        return RouteTables(risk=0.0)
+    from assess.routes.evaluate import KeptRoutes
+
+    assessment, simulator, kind = found.assessment, snapshot.simulator, settings == AS_RUN
+
+    def make() -> RouteTables:
+        with simulator.routes_lock:
+            kept = simulator.routes.setdefault(kind, KeptRoutes())
+            return evaluate_route_tables(assessment, SILENT, kept=kept)
+
+    return snapshot.keep(("route tables", settings), make, found.arrived)
+
+
+def _find(snapshot: "Snapshot", settings: Settings, routes: bool) -> Evaluation:
+    inventory, arrived = replace(snapshot.inventory, hazard=None), snapshot.simulator.arrived
     inventory = inventory if routes else replace(inventory, routes=())
-    if settings != BY_FORMULAS:
-        return _evaluate(snapshot, inventory, settings)
-    return snapshot.keep(("formulas", bool(inventory.routes)), lambda: _evaluate(snapshot, inventory, settings))
+    name = "evaluation", settings, bool(inventory.routes)
+    return snapshot.keep(name, lambda: _evaluate(snapshot, inventory, settings, arrived), arrived)
 
 
-def _evaluate(snapshot: "Snapshot", inventory: Inventory, settings: Settings) -> Evaluation:
+def _evaluate(snapshot: "Snapshot", inventory: Inventory, settings: Settings, arrived: int) -> Evaluation:
     kind = settings.scenario or inventory.building.scenario_kind or SCENARIOS[0]
     demands, faults = serve_floors(inventory, kind, ductility_reduction=settings.ductility_reduction)
     served = {floor for floor, _axis in demands}
@@ -79,8 +137,8 @@ def _evaluate(snapshot: "Snapshot", inventory: Inventory, settings: Settings) ->
                 if (not one.floor or one.floor in served) and {one.start, one.end} <= named
             ),
         )
-    assessment = compute(inventory, settings)
-    return Evaluation(assessment, frozenset(unserved), (*faults, *assessment.problems[known:]))
+    assessment = compute(inventory, settings, verdicts=snapshot.simulator.verdicts)
+    return Evaluation(assessment, frozenset(unserved), (*faults, *assessment.problems[known:]), arrived)
 
 
 def list_floors(tables: Tables) -> list[Row]:

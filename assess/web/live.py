@@ -1,12 +1,13 @@
 """Classes and live values of every piece as one types, the problems of the workbook, and what of them has changed.
 
-All comes from the run by the formulas. In place of a class stands the word that the class column of the workbook shows,
-but that the run knows more: of a floor with a record, say, Excel shows ``run assess`` and the page the class.
+All comes from one `Evaluation`. In place of a class stands the word that the class column of the workbook shows, but
+that the evaluation knows more: of a floor with a record, say, Excel shows ``run assess`` and the page the class.
 """
 
 import re
 from collections import OrderedDict
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from itertools import islice, product
 from threading import Lock
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -16,12 +17,13 @@ from numpy.typing import NDArray
 
 from assess.errors import AssessError, Gap, Problem
 from assess.i18n import gettext, load_catalogue, speaking
-from assess.methods import Method, adopted_formula, paper_formula
+from assess.methods import Method, paper_formula, simulation
 from assess.model import AXES, Inventory
-from assess.pipeline.adopt import Assessment
+from assess.pipeline.adopt import SIMULATED, UNCONFIRMED, Assessment
+from assess.results import BASES
 from assess.risk import RiskClass, classify_all
 from assess.units import GRAVITY, LENGTH, VELOCITY
-from assess.web.evaluation import Evaluation, evaluate, list_floors
+from assess.web.evaluation import Evaluation, evaluate, list_floors, wait_for_simulation
 from assess.web.fixes import Fixes
 from assess.web.request_errors import say_sentence
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
@@ -37,8 +39,10 @@ from assess.workbook.schema import CLASS, CLASS_OR, LIVE, NO, SHEETS, WORKINGS, 
 if TYPE_CHECKING:
     from assess.web.book import Book, Snapshot
 
-MOST_VERSIONS = 4
-"""Versions of which it is known what was sent of them: an older page is answered whole."""
+MOST_STATES = 4
+"""States of which it is known what was sent of them: an older page is answered whole."""
+FEW, SOON = 60, 0.1
+"""So few cases that are still to be rocked are waited for, and how long [s]: an edit is answered with them."""
 MOST_PROBLEMS = 1000
 """Problems in one answer; the rest are counted."""
 MOST_NAMED = 3
@@ -57,65 +61,76 @@ _SEVERITIES = ("error", "warning", "note")
 
 
 class LiveRow(NamedTuple):
-    """What is shown of a row: `values` are those of the columns that Excel computes, in their order in the sheet."""
+    """What is shown of a row: `values` are those of the columns that Excel computes, in their order in the sheet.
 
-    risk: str
-    word: str
-    chance: float | None
-    outside: bool
-    values: tuple[float | str | None, ...]
+    `basis` is one of `assess.results.BASES`, with "_", "formula" until it is simulated; `quick` is the formula's class.
+    """
+
+    risk: str = ""
+    word: str = ""
+    basis: str = ""
+    assumed: bool = False
+    chance: float | None = None
+    low: float | None = None
+    high: float | None = None
+    quick: str = ""
+    outside: bool = False
+    values: tuple[float | str | None, ...] = ()
 
 
 Rows = Mapping[int, LiveRow]
+SHOWN = ("class", *LiveRow._fields[1:-1])
+"""The names of the fields of a row, but for its values, as the page gets them."""
 
 
 class _State(NamedTuple):
     """What is shown of one version: rows by number, the live columns, and all of the answer but the rows."""
 
-    version: int
     rows: Rows
     columns: tuple[int, ...]
     rest: Mapping[str, Any]
 
 
 class LiveView:
-    """What the page of one session knows of each version of its workbook."""
+    """What the page of one session knows of each state of its workbook: of a version, and what had been simulated."""
 
     def __init__(self) -> None:
         self._lock = Lock()
         self._book: Book | None = None
-        self._states: OrderedDict[int, _State] = OrderedDict()
+        self._states: OrderedDict[str, _State] = OrderedDict()
 
-    def answer(self, book: "Book", since: int | None) -> dict[str, Any]:
-        """Return the answer of `GET /api/live`: the rows that changed since a version, all where that is not known."""
+    def answer(self, book: "Book", since: str | None) -> dict[str, Any]:
+        """Return the answer of `GET /api/live`: the rows that changed since a stamp, all where that is not known."""
+        snapshot = book.snapshot()
+        with suppress(AssessError):
+            wait_for_simulation(snapshot, seconds=SOON, most=FEW)
         with self._lock:
             if book is not self._book:
                 self._book, self._states = book, OrderedDict()
-            snapshot = book.snapshot()
-            before, now = None if since is None else self._states.get(since), self._states.get(snapshot.version)
+            stamp = snapshot.stamp
+            before, now = None if since is None else self._states.get(since), self._states.get(stamp)
             if now is None:
                 now = _describe_state(snapshot)
                 if self._states:  # rows that are alike are held once
                     known = next(reversed(self._states.values())).rows
                     rows = {at: known[at] if known.get(at) == row else row for at, row in now.rows.items()}
                     now = now._replace(rows=rows)
-                self._states[now.version] = now
-                while len(self._states) > MOST_VERSIONS:
+                self._states[stamp] = now
+                while len(self._states) > MOST_STATES:
                     self._states.popitem(last=False)
         is_whole = before is None or before.columns != now.columns
         old: Rows = {} if is_whole or before is None else before.rows
         changed = {number: row for number, row in now.rows.items() if old.get(number) != row}
         gone = [number for number in old if number not in now.rows]
-        items = describe_rows(changed, now.columns)
-        return {"version": now.version, "whole": is_whole, "items": items, "gone": gone, **now.rest}
+        found = {"version": snapshot.version, "stamp": stamp, "whole": is_whole, "gone": gone, **now.rest}
+        return {**found, "items": describe_rows(changed, now.columns)}
 
 
 def describe_rows(rows: Rows, columns: Iterable[int] = ()) -> dict[str, Any]:
-    """Return rows as columns; without `columns`, the places of the live ones, what the page compares alone."""
-    *compared, values = map(list, zip(*rows.values(), strict=True) if rows else [()] * 5)
-    named = zip(("class", "word", "chance", "outside"), compared, strict=True)
+    """Return rows as columns; `columns` are the places of the live ones."""
+    *compared, values = map(list, zip(*rows.values(), strict=True) if rows else [()] * len(LiveRow._fields))
     own = {str(at): [row[place] for row in values] for place, at in enumerate(columns)}
-    return {"row": list(rows), **dict(named), "values": own}
+    return {"row": list(rows), **dict(zip(SHOWN, compared, strict=True)), "values": own}
 
 
 def _describe_state(snapshot: "Snapshot") -> _State:
@@ -137,9 +152,11 @@ def _describe_state(snapshot: "Snapshot") -> _State:
             peaks = {axis: [one.pfa for one in demands.get((row.get("floor"), axis), ())] for axis in AXES}
             largest = {f"pfa_{axis.lower()}": max(own) / GRAVITY if own else None for axis, own in peaks.items()}
             floors.append({"row": row.number, "floor": row.get("floor"), **largest})
-        counts, more = count_classes(rows, snapshot.tables["Items"]), max(0, len(problems) - MOST_PROBLEMS)
-        rest = {"problems": problems[:MOST_PROBLEMS], "more": more, "counts": counts, "floors": floors, "error": fault}
-        return _State(snapshot.version, rows, tuple(columns), rest)
+        rest = {
+            "problems": problems[:MOST_PROBLEMS], "more": max(0, len(problems) - MOST_PROBLEMS), "floors": floors,
+            "counts": count_classes(rows, snapshot.tables["Items"]), "simulation": found.describe(), "error": fault,
+        }  # fmt: skip
+        return _State(rows, tuple(columns), rest)
 
 
 def describe_failure(problems: Sequence[Problem], found: Evaluation) -> str:
@@ -174,7 +191,7 @@ def list_rows(
             if (anchored.get(row.number) or row.get("anchored")) == YES:
                 is_known = row.get("bracket_capacity") is not None and row.get("anchored") == YES
                 word = shown[CLASS] = shown[CLASS_OR] = gettext(RUN_ASSESS if is_known else IS_ANCHORED)
-        rows[row.number] = LiveRow("", word, None, False, tuple(shown.get(label) for label in labels))
+        rows[row.number] = LiveRow(word=word, values=tuple(shown.get(label) for label in labels))
     return rows
 
 
@@ -209,18 +226,46 @@ def count_classes(rows: Rows, items: Table) -> dict[str, int]:
 
 
 def _list_assessed(assessment: Assessment, labels: Sequence[str]) -> dict[int, LiveRow]:
-    """Return what is shown of each piece under the motion that governs it."""
-    at, adoption, held = assessment.governing, assessment.adoption, assessment.held.tolist()
-    risks, outside = adoption.risk[at], _find_outside(assessment, adopted_formula(assessment.settings.class_by))
-    texts = _name_classes(assessment, risks, outside)
-    columns, blank = _list_columns(assessment, texts) if labels else {}, [None] * len(texts)
-    values = zip(*(columns.get(label, blank) for label in labels), strict=True) if labels else [()] * len(texts)
-    shown = (risks.tolist(), adoption.probability[at].tolist(), outside.tolist(), held, texts, values)
+    """Return what is shown of each piece: as the reports, the worst class of its motions once it is simulated."""
+    at, adoption, count = assessment.governing, assessment.adoption, len(assessment.inventory.items)
+    if not count:
+        return {}
+    simulated, formula = (assessment.outcomes[one.key] for one in (simulation(), assessment.formula))
+    firsts = np.searchsorted(assessment.case_item, np.arange(count))
+    has_run = np.logical_or.reduceat(~np.isnan(simulated.value), firsts)
+    risks = np.where(has_run, np.maximum.reduceat(adoption.risk, firsts), adoption.risk[at])
+    quick = np.maximum.reduceat(np.where(adoption.can_rock, classify_all(formula.value), RiskClass.LOW), firsts)
+    bases, waits = adoption.basis[at], assessment.waits
+    low, high = _find_ranges(assessment)
+    is_assumed, outside = simulated.flags["assumed_motion"][at], _find_outside(assessment, assessment.formula)
+    held, texts = assessment.held.tolist(), _name_classes(assessment, risks, outside)
+    columns, blank = _list_columns(assessment, texts) if labels else {}, [None] * count
+    values = zip(*(columns.get(label, blank) for label in labels), strict=True) if labels else [()] * count
+    shown = zip(
+        assessment.inventory.items, held, risks.tolist(), texts, bases.tolist(), waits.tolist(), is_assumed.tolist(),
+        adoption.probability[at].tolist(), low, high, quick.tolist(), outside.tolist(), values, strict=True,
+    )  # fmt: skip
     rows = {}
-    for item, risk, chance, is_outside, is_held, text, own in zip(assessment.inventory.items, *shown, strict=True):
-        row = LiveRow(CLASSES[risk], "", chance, is_outside, own)
-        rows[item.row] = LiveRow("", text, None, False, own) if is_held else row
+    for item, is_held, risk, text, basis, is_open, assumed, chance, least, most, by_formula, is_outside, own in shown:
+        named = "formula" if is_open else BASES[basis].replace(" ", "_")
+        rows[item.row] = LiveRow(
+            "" if is_held else CLASSES[risk], text if is_held else "", named, assumed, chance, least, most,
+            CLASSES[by_formula], is_outside and not is_held, own,
+        )  # fmt: skip
     return rows
+
+
+def _find_ranges(assessment: Assessment) -> tuple[list[float | None], list[float | None]]:
+    """Return the ends of the range of each piece's chance, as `assess.report.words.find_range`; None by the formula."""
+    at, adoption, simulated = assessment.governing, assessment.adoption, assessment.outcomes[simulation().key]
+    ends = np.stack([adoption.low[at], adoption.high[at]])
+    thirds = np.stack([simulated.detail[name][at].astype(np.float64) for name in ("if_slower", "if_faster")])
+    every = np.vstack([thirds, adoption.probability[at]])
+    basis, is_unknown = adoption.basis[at], simulated.flags["unknown_building"][at]
+    is_found = (basis == SIMULATED) | ((basis == UNCONFIRMED) & is_unknown)
+    by_thirds = np.stack([every.min(axis=0), every.max(axis=0)])  # NaN where a third is
+    low, high = np.where(is_found & ~np.isnan(by_thirds[0]), by_thirds, ends).tolist()
+    return [None if one != one else one for one in low], [None if one != one else one for one in high]
 
 
 def _find_outside(assessment: Assessment, method: Method) -> NDArray[np.bool_]:

@@ -5,12 +5,11 @@ from typing import TYPE_CHECKING, Any
 from assess.errors import AssessError
 from assess.i18n import gettext, load_catalogue, ngettext, speaking
 from assess.model import Inventory
-from assess.pipeline.run import evaluate_route_tables
-from assess.progress import SILENT
 from assess.report.say import route as say
 from assess.route_results import RoomRow, RouteRow, RouteState, RouteTables, SegmentRow
 from assess.routes.obstructions import find_route_problems
-from assess.web.evaluation import Evaluation, evaluate, list_floors
+from assess.settings import Settings
+from assess.web.evaluation import AS_RUN, Evaluation, evaluate, list_floors, tabulate_routes
 from assess.web.live import describe_problems
 from assess.workbook.names import key
 from assess.workbook.parse import Tables
@@ -21,26 +20,32 @@ if TYPE_CHECKING:
 
 
 def describe_routes(snapshot: "Snapshot") -> dict[str, Any]:
-    """Return the answer of `GET /api/routes`: all states by the formulas, in the language of the workbook."""
-    inventory = snapshot.inventory
+    """Return the answer of `GET /api/routes`: all states, in the language of the workbook."""
+    inventory, stamp = snapshot.inventory, snapshot.stamp
+    simulation = Evaluation(None, frozenset(), ()).describe()
     with speaking(load_catalogue(inventory.language)):
         try:
             found = evaluate(snapshot)
-            states = describe_states(snapshot.tables, inventory, found)
+            states, simulation = describe_states(snapshot, inventory, found), found.describe()
             assessed = found.assessment
             shown = () if assessed is None else find_route_problems(assessed.inventory, assessed.obstructions)
             problems = describe_problems(map(inventory.place, shown), inventory.sheets)
         except AssessError as error:
             states, problems = describe_unknown(snapshot.tables, gettext(error.message)), []
-    return {"version": snapshot.version, **states, "problems": problems}
+    return {
+        "version": snapshot.version, "stamp": stamp, **states, "simulation": simulation, "problems": problems,
+    }  # fmt: skip
 
 
-def describe_states(tables: Tables, inventory: Inventory, found: Evaluation) -> dict[str, Any]:
-    """Return the states of routes, rooms and segments, and remarks, in the language in use.
+def describe_states(
+    snapshot: "Snapshot", inventory: Inventory, found: Evaluation, settings: Settings = AS_RUN
+) -> dict[str, Any]:
+    """Return the states of routes, rooms and segments of an evaluation, and remarks, in the language in use.
 
     Where the shaking of a floor with a segment is not known nothing is known of routes. Those with a segment that was
     left out for an error are not known either.
     """
+    tables = snapshot.tables
     places_by_key, crossed = places_by_name(tables["Places"]), dict[str, str]()  # floors whose motion is not known
     for row in tables["Routes"].rows:
         ends = [places_by_key.get(key(row.get(name) or "")) for name in ("start", "end")]
@@ -53,9 +58,7 @@ def describe_states(tables: Tables, inventory: Inventory, found: Evaluation) -> 
                        floors=say.name_few(floors))  # fmt: skip
         return describe_unknown(tables, text)
     left_out = _find_left_out(tables, inventory)
-    routes = RouteTables(risk=0.0)
-    if found.assessment is not None and inventory.routes:
-        routes = evaluate_route_tables(found.assessment, SILENT)
+    routes = tabulate_routes(snapshot, found, settings)
     known, places = {key(one.route) for one in routes.routes}, {one.place: one for one in inventory.places}
     lost = [(name, why) for name, why in left_out.items() if name and name not in known]
     remarks, faulty = list[str](), len(tables["Items"].rows) - len(inventory.items)

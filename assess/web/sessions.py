@@ -5,7 +5,7 @@ import shutil
 import tempfile
 import threading
 from collections.abc import Callable, Mapping
-from contextlib import suppress
+from contextlib import AbstractContextManager, ExitStack, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,7 +18,8 @@ from assess.web.importing import FOLDER, READING, SOURCE, Import, Routes
 from assess.web.jobs import BUSY, Job
 from assess.web.limits import OWN, PREFIX, Limits, check_room, find_room
 from assess.web.request_errors import CONFLICT, NOT_FOUND, RequestError
-from assess.web.slots import Slots
+from assess.web.simulating import SECONDS
+from assess.web.slots import Slots, take
 from assess.web.starting import Made, build_workbook, place_files, place_workbook
 
 if TYPE_CHECKING:
@@ -70,6 +71,7 @@ class Session:
             self.save()
             self.drop_book(kept=book.folder)
             self.book, self.downloaded = book, book.version
+            book.simulator.limit(self._hold_place, min(self.limits.job_seconds, SECONDS))
             if book.path is not None and self.folder.parent.name.startswith(PREFIX):
                 other = _find_other(self.folder, book.path)
                 note = json.dumps({"path": str(book.path.resolve()), "pid": self.server})
@@ -82,6 +84,14 @@ class Session:
                         name=book.name, pid=str(other),
                     )  # fmt: skip
         return book
+
+    def _hold_place(self) -> AbstractContextManager[object] | None:
+        """Take a place among the sessions that simulate while one types."""
+        place = take(self.folder.parent, "live", self.limits.simulations)
+        stack = ExitStack()
+        if place is not None:
+            stack.callback(place.release)
+        return None if place is None else stack
 
     def hold(self, name: str, data: bytes) -> "Book":
         """Open a workbook that was sent."""
@@ -159,6 +169,8 @@ class Session:
         """End with the workbook and its job, and remove the files of one that was held."""
         if self.job is not None:
             self.job.close()
+        if self.book is not None:
+            self.book.simulator.close()
         self.job = self.book = self.live = self.imported = None
         (self.folder / NOTE).unlink(missing_ok=True)
         for folder in self.folder.glob("files-*"):

@@ -5,8 +5,24 @@ from contextlib import ExitStack
 
 import pytest
 
+from assess.web.simulating import Simulator
 from tests.waiting import PATIENCE
 from tests.web.serving import Client, serve_here, start
+
+
+@pytest.fixture(autouse=True)
+def _end_simulations(monkeypatch):
+    """End what books of the test still simulate."""
+    made, make = [], Simulator.__init__
+
+    def begin(self):
+        make(self)
+        made.append(self)
+
+    monkeypatch.setattr(Simulator, "__init__", begin)
+    yield
+    for one in made:
+        one.close()
 
 
 @pytest.fixture

@@ -5,8 +5,11 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
+from assess.settings import Settings
 from assess.web.book import Book
+from assess.web.evaluation import AS_RUN, Evaluation, evaluate
 from assess.workbook.template import Content, Units, write_workbook
+from tests.waiting import wait_until
 from tests.workbooks import FLOORS, ITEMS
 
 MARKET = Path(__file__).parents[2] / "inventories" / "market-street.xlsx"
@@ -25,6 +28,15 @@ def edit(book: Book, *cells) -> None:
         assert place is not None, field
         edits.append([sheet, *place, value])
     book.edit(book.version, edits, "test")
+
+
+def settle(book: Book, settings: Settings = AS_RUN) -> Evaluation:
+    """Wait until every piece of the workbook as it is now has been simulated."""
+    found: Evaluation = wait_until(
+        lambda: evaluate(book.snapshot(), settings, routes=False),
+        lambda one: one.simulation.state in ("done", "failed"),
+    )
+    return found
 
 
 @cache

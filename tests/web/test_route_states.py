@@ -9,8 +9,7 @@ import assess
 from assess.report.say.route import say_blocked, say_outlook, say_room_state
 from assess.route_results import RouteState
 from assess.web.route_states import describe_routes
-from tests.web.opened import MARKET, edit, hold, write_template
-from tests.workbooks import UNVERIFIED
+from tests.web.opened import MARKET, edit, hold, settle, write_template
 
 HALL: dict[str, list[dict[str, Any]]] = {
     "Floors": [{"floor": "1", "pfa_x": 0.5, "elevation": 0}, {"floor": "2", "pfa_x": 0.2, "elevation": 4}],
@@ -31,6 +30,7 @@ HALL: dict[str, list[dict[str, Any]]] = {
 
 
 def _answer(book):
+    settle(book)
     return json.loads(json.dumps(describe_routes(book.snapshot())))
 
 
@@ -59,8 +59,10 @@ def _compare(answer, results):
 
 
 @pytest.mark.slow
-def test_states_are_those_of_the_run_and_a_piece_with_an_error_leaves_the_routes_to_the_others(example, tmp_path):
-    answer = _answer(hold(MARKET))
+def test_states_are_those_of_the_run_and_a_piece_with_an_error_leaves_the_routes_to_the_others(
+    example_inventory, tmp_path
+):
+    answer, example = _answer(hold(MARKET)), assess.run(example_inventory, figures=False)
     _compare(answer, example)
     detail = {one["route"]: one["detail"] for one in answer["routes"]}
     assert all(detail[one.route].startswith(say_blocked(one)) for one in example.route_tables.routes)
@@ -72,7 +74,7 @@ def test_states_are_those_of_the_run_and_a_piece_with_an_error_leaves_the_routes
     (tmp_path / "w.xlsx").write_bytes(book.write())
     inventory = assess.read_inventory(tmp_path / "w.xlsx", records=MARKET.parent, strict=False)
     answer = _answer(book)
-    _compare(answer, assess.run(inventory, UNVERIFIED))
+    _compare(answer, assess.run(inventory, figures=False))
     assert answer["remarks"][0].startswith("1 row of furniture has an error")
 
 

@@ -3,7 +3,7 @@
 import { countBadges } from "./classes.mjs";
 import { choose, clear, el, labelled } from "./elements.mjs";
 import { icon } from "./icons.mjs";
-import { countSimulated, jobs } from "./job.mjs";
+import { jobs } from "./job.mjs";
 import { imports } from "./import_job.mjs";
 import { acceptDrops } from "./open_file.mjs";
 import { showFiles } from "./files_view.mjs";
@@ -41,7 +41,7 @@ class Frame {
     document.body.append(this.#skip(), this.#header(), this.tabs.main, notices);
     store.addEventListener("book", () => this.#showBook());
     store.addEventListener("state", () => this.#showState());
-    for (const event of ["live", "simulated"]) store.addEventListener(event, () => this.#showCounts());
+    store.addEventListener("live", () => this.#showCounts());
     this.watch.addEventListener("connection", () => this.#showState());
     addEventListener("keydown", (event) => this.#onKey(event));
     addEventListener("beforeunload", (event) => this.#onLeaving(event));
@@ -94,15 +94,12 @@ class Frame {
     return p.menu;
   }
 
-  /** The pieces by class, and by what: by the formula, or by the simulation once there is one. */
+  /** The pieces by class, and how far the simulation is. */
   #countsLine() {
     const p = this.#parts;
     p.badges = el("ul", { class: "counts" });
-    p.basis = el("span", { class: "basis", text: t("by formula") });
-    p.bases = choose([["simulated", t("simulated")], ["formula", t("by formula")]], "simulated", { class: "basis", "aria-label": t("Classes by"), hidden: true });
-    p.bases.addEventListener("change", () => this.#showCounts());
-    p.since = el("span", { class: "since warning-text", hidden: true });
-    return el("div", { class: "counts-line" }, p.basis, p.bases, p.badges, p.since);
+    p.progress = el("progress", { class: "simulating", max: 1, hidden: true });
+    return el("div", { class: "counts-line" }, p.progress, p.badges);
   }
 
   #languageSwitch() {
@@ -177,19 +174,22 @@ class Frame {
 
   #showCounts() {
     const p = this.#parts;
-    const simulated = countSimulated();
-    const isSimulated = Boolean(simulated) && p.bases.value === "simulated";
-    clear(p.badges).append(...countBadges(isSimulated ? simulated : this.#store.counts));
-    p.badges.setAttribute("aria-label", isSimulated ? t("Pieces by class, simulated") : t("Pieces by class, by formula"));
-    p.basis.hidden = Boolean(simulated);
-    p.bases.hidden = !simulated;
-    p.counts.title = isSimulated
-      ? t("Pieces by class as the simulation found them, as in its reports. Those under – are anchored, or have the formula's class only.")
-      : t("Pieces by class as the formula has them now; they follow every change. Those under – are anchored, or have no class.");
-    const n = jobs.current?.stale?.length ?? 0;
-    p.since.hidden = !isSimulated || n === 0;
-    p.since.textContent = tn("{n:,} row changed since", "{n:,} rows changed since", n);
+    const { counts, simulation, isSimulating } = this.#store;
+    clear(p.badges).append(...countBadges(counts, isSimulating || simulation.state === "failed"));
+    p.badges.setAttribute("aria-label", t("Pieces by class"));
+    p.progress.hidden = !isSimulating;
+    p.progress.value = simulation.of ? simulation.done / simulation.of : 0;
+    p.counts.title = simulationText(simulation);
+    p.progress.setAttribute("aria-label", p.counts.title);
   }
+}
+
+/** How far the simulation is, in a sentence. */
+export function simulationText({ state, done, of, message }) {
+  if (state === "failed") return message;
+  if (state === "waiting") return t("Other users simulate at the moment. Until it is this workbook's turn, ≈ marks classes by the formula.");
+  if (state === "running") return t("Simulated: {done:,} of {of:,} rows. ≈ marks classes by the formula until then.", { done, of });
+  return t("Pieces by class, as simulated and as reports have them. Those under – are anchored, or have no class.");
 }
 
 export const buildFrame = (store) => new Frame(store);

@@ -2,7 +2,7 @@
 // are in grid_editor.mjs, grid_pointer.mjs and grid_keys.mjs.
 
 import { clear, el } from "./elements.mjs";
-import { cellText, cellValue, classColumn, describeCell, hasChoices, isComputed, problemText, simulatedColumn } from "./grid_cells.mjs";
+import { cellText, cellValue, classColumn, describeCell, hasChoices, isComputed, problemText } from "./grid_cells.mjs";
 import { RowOrder } from "./grid_rows.mjs";
 import { Selection } from "./grid_selection.mjs";
 import { icon } from "./icons.mjs";
@@ -75,14 +75,13 @@ export class Grid extends EventTarget {
     this.#places.clear();
   }
 
-  /** Build the columns anew: after another sheet, or where a simulation has come or gone. */
+  /** Build the columns anew: after another sheet. */
   refreshColumns() {
     const shown = this.sheet.columns.filter((column) => !column.hidden);
     const isClass = (column) => column.field === "class" && column.kind === "live";
-    const isItems = this.sheet.name === "Items";
-    if (isItems && !shown.some(isClass)) shown.splice(1, 0, classColumn()); // a file without the column shows it, too
-    this.hasSimulated = this.store.simulated.size > 0 && isItems;
-    if (this.hasSimulated) shown.splice(shown.findIndex(isClass) + 1, 0, simulatedColumn());
+    const at = shown.findIndex(isClass);
+    if (at >= 0) shown[at] = classColumn(shown[at]);
+    else if (this.sheet.name === "Items") shown.splice(1, 0, classColumn());
     const isFrozen = (column) => (column.at === null ? isClass(column) : column.at < this.sheet.frozen);
     this.columns = shown.map((column) => ({ ...column, isFrozen: isFrozen(column) }));
     this.columns.sort((one, other) => other.isFrozen - one.isFrozen);
@@ -190,7 +189,6 @@ export class Grid extends EventTarget {
 
   draw() {
     if (!this.sheet || !this.box.clientHeight) return;
-    if (this.hasSimulated !== (this.store.simulated.size > 0 && this.sheet.name === "Items")) this.refreshColumns();
     this.table.style.height = `${this.height}px`;
     this.table.setAttribute("aria-rowcount", this.order.length + 1);
     this.table.setAttribute("aria-colcount", this.columns.length + 1);

@@ -99,7 +99,6 @@ class GridView {
     store.addEventListener("book", () => this.#opened());
     store.addEventListener("cells", ({ detail }) => this.#changed(detail));
     store.addEventListener("live", () => this.#draw());
-    store.addEventListener("simulated", () => this.#draw());
     store.addEventListener("problems", () => (this.#drawTabs(), this.#draw(), this.#drawLine()));
     store.addEventListener("history", ({ detail }) => this.#isShown && this.#showChange(detail));
     store.addEventListener("reveal", ({ detail }) => this.reveal(detail));

@@ -1,12 +1,12 @@
 // The panel for what is selected: a piece, several, a place, a segment, with the cells that matter.
 
-import { badge } from "./classes.mjs";
+import { badge, chanceText, classDetail, isPale } from "./classes.mjs";
 import { clear, el } from "./elements.mjs";
 import { fixButtons } from "./fixes.mjs";
 import { ask } from "./messages.mjs";
 import { shownLength } from "./plan_pieces.mjs";
 import { isFilled } from "./sheet.mjs";
-import { number, percent, t, tn } from "./texts.mjs";
+import { number, t, tn } from "./texts.mjs";
 
 const PIECE_FIELDS = ["item", "room", "type", "anchored", "x", "y", "angle_deg", "against_wall"];
 const PLACE_FIELDS = ["place", "kind", "x", "y"];
@@ -55,12 +55,13 @@ export class Details {
 
   #piece(row) {
     const piece = this.model.pieces.get(row);
-    const { key, chance, isStale, word } = this.scene.pieces.classOf(piece);
+    const { key, word, live } = this.scene.pieces.classOf(piece);
     const unit = this.model.unit;
     const sizes = ["breadth", "width", "height"].map((name) => (piece.missing.includes(name) ? "?" : number(piece[name] / unit.factor, 2))).join(" × ");
     this.#add(
       el("h2", { text: piece.item }), piece.description && el("p", { text: piece.description }),
-      el("p", { class: isStale ? "class-line stale" : "class-line" }, badge(key), chance !== null ? ` ${percent(chance)}` : key ? "" : ` ${word}`, isStale && ` ${t("simulated before it was changed")}`),
+      el("p", { class: "class-line" }, badge(key, { isPale: isPale(live) }), ` ${key ? chanceText(live) : word}`),
+      classDetail(live) && el("p", { class: "hint", text: classDetail(live) }),
       el("p", { class: "muted", text: t("Breadth × Width × Height: {sizes} {unit}", { sizes, unit: unit.unit }) }),
       ...piece.missing.map((name) => this.#lacking(row, name)));
     if (!this.canEdit()) return;

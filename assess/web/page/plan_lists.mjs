@@ -1,6 +1,6 @@
 // Lists beside the plan: pieces by class and those not placed yet, types to add, states of routes and rooms.
 
-import { CLASSES, describe } from "./classes.mjs";
+import { CLASSES, chanceText, describe, isPale } from "./classes.mjs";
 import { clear, el } from "./elements.mjs";
 import { nameKey } from "./plan_model.mjs";
 import { shownLength } from "./plan_pieces.mjs";
@@ -30,7 +30,9 @@ export class PieceLists {
     const words = wordsOf(this.search);
     this.#drawUnplaced((this.model.plan?.unplaced ?? []).filter((one) => matches(words, one.item, one.description)));
     const found = this.scene.pieces.order().map((row) => this.model.pieces.get(row)).filter((one) => matches(words, one.item, one.description));
-    const groups = [...CLASSES, ""].map((key) => [key, found.filter((one) => this.scene.pieces.classOf(one).key === key)]).filter(([, all]) => all.length);
+    const chance = (one) => this.scene.pieces.classOf(one).chance ?? 0;
+    const sorted = [...found].sort((one, other) => chance(other) - chance(one)); // stable: else in the order of reading
+    const groups = [...CLASSES, ""].map((key) => [key, sorted.filter((one) => this.scene.pieces.classOf(one).key === key)]).filter(([, all]) => all.length);
     clear(this.list).append(...groups.map(([key, all]) => this.#group(key, all)));
     if (!found.length) this.list.append(el("p", { class: "muted", text: t("No piece of this floor is on the plan.") }));
   }
@@ -43,10 +45,11 @@ export class PieceLists {
   }
 
   #row(piece) {
-    const { chance, isAnchored, word } = this.scene.pieces.classOf(piece);
+    const { chance, isAnchored, word, live } = this.scene.pieces.classOf(piece);
+    const fails = chance === null ? "" : ` ${t("{chance} if the anchor fails", { chance: percent(chance) })}`;
     const isSelected = this.scene.pieces.selected.has(piece.row);
     return el("li", null, el("button", { type: "button", class: "quiet row", "aria-pressed": String(isSelected), dataset: { row: piece.row }, on: { click: () => this.goTo("Items", piece.row, [piece.x, piece.y]) } },
-      el("b", { text: piece.item }), el("span", { text: piece.description }), el("span", { class: "end", text: chance === null ? (isAnchored ? `⚓ ${word}` : word) : percent(chance) })));
+      el("b", { text: piece.item }), el("span", { text: piece.description }), el("span", { class: "end", text: live?.class ? chanceText(live) || (isPale(live) ? "≈" : "") : isAnchored ? `⚓ ${word}${fails}` : word })));
   }
 
   #drawUnplaced(rows) {

@@ -34,7 +34,7 @@ export class PlanModel extends EventTarget {
   #abort = null;
   #held = false;
   #isStale = true;
-  #routesVersion = null;
+  #routesStamp = null;
 
   constructor(store) {
     super();
@@ -42,8 +42,7 @@ export class PlanModel extends EventTarget {
     store.addEventListener("book", () => this.#reset());
     store.addEventListener("cells", ({ detail }) => this.#patch(detail));
     store.addEventListener("state", () => this.#follow());
-    store.addEventListener("live", () => this.#tell("classes"));
-    store.addEventListener("simulated", () => this.#tell("classes"));
+    store.addEventListener("live", () => (this.#tell("classes"), this.isShown && this.#askRoutesSoon()));
   }
 
   #tell(name) {
@@ -88,7 +87,7 @@ export class PlanModel extends EventTarget {
     if (!name) this.pieces = this.places = this.segments = new Map();
     this.routes = null;
     this.types = [];
-    this.#routesVersion = null;
+    this.#routesStamp = null;
     this.#isStale = true;
     if (this.isShown) this.#ask();
     this.#askRoutesSoon(0);
@@ -156,9 +155,9 @@ export class PlanModel extends EventTarget {
     if (this.#isStale) this.#ask();
   }
 
-  #askRoutesSoon(delay) {
+  #askRoutesSoon(delay = ROUTES_MS) {
     if (!this.isShown || !this.store.book) return;
-    if (this.#routesVersion === this.store.state.version && this.routes) return;
+    if (this.#routesStamp === this.store.stamp && this.routes) return;
     this.routesOld = this.routes !== null;
     if (this.routesOld) this.#tell("routes");
     clearTimeout(this.#routesTimer);
@@ -175,7 +174,7 @@ export class PlanModel extends EventTarget {
     }
     if (asked !== this.#routesAsked) return;
     this.routes = answer;
-    this.#routesVersion = answer.version;
+    this.#routesStamp = answer.stamp ?? null;
     this.routesOld = answer.version !== null && answer.version < this.store.state.version;
     this.#tell("routes");
   }

@@ -1,9 +1,9 @@
 // The pieces on the plan: a rectangle each, with its class as colour and sign, its name, and the sides that are Breadth.
 
-import { describe } from "./classes.mjs";
+import { basisWords, chanceText, classStyle, describe, isPale } from "./classes.mjs";
 import { svg } from "./elements.mjs";
 import { turnPoint } from "./plan_geometry.mjs";
-import { number, percent, t } from "./texts.mjs";
+import { number, t } from "./texts.mjs";
 
 const LEAST_SIGN = 7; // font size [px]
 const MOST_SIGN = 15;
@@ -22,7 +22,7 @@ export class PieceLayer {
   active = 0; // the piece that Tab reaches
 
   constructor(model, store) {
-    Object.assign(this, { model, store, scale: 40, usesSimulated: true, selected: new Set() });
+    Object.assign(this, { model, store, scale: 40, selected: new Set() });
     this.node = svg("g", { class: "pieces" });
   }
 
@@ -71,14 +71,14 @@ export class PieceLayer {
     const isSelected = this.selected.has(piece.row);
     const pose = this.#previews.get(piece.row) ?? piece;
     const label = this.label(piece);
-    const mark = [label, b, w, piece.missing, isSelected, shown.isStale, shown.isAnchored, pose.x, pose.y, pose.angle, this.scale].join("|");
+    const mark = [label, b, w, piece.missing, isSelected, shown.isPale, shown.isAnchored, pose.x, pose.y, pose.angle, this.scale].join("|");
     if (parts.mark === mark) return;
     parts.mark = mark;
     const set = (node, values) => Object.entries(values).forEach(([name, value]) => node.setAttribute(name, value));
     set(parts.body, { x: -b / 2, y: -w / 2, width: b, height: w });
     set(parts.sides, { d: `M${-b / 2} ${-w / 2}H${b / 2}M${-b / 2} ${w / 2}H${b / 2}` });
-    const { key, isStale, isAnchored } = shown;
-    const classes = ["piece", describe(key).css, isSelected && "selected", isStale && "stale", isAnchored && !key && "anchored", piece.missing.length && "sizes-missing", piece.missing.includes("width") && "width-missing"];
+    const { key, isAnchored } = shown;
+    const classes = ["piece", key ? classStyle(shown.live) : describe("").css, isSelected && "selected", isAnchored && !key && "anchored", piece.missing.length && "sizes-missing", piece.missing.includes("width") && "width-missing"];
     set(parts.node, { class: classes.filter(Boolean).join(" "), "aria-selected": String(isSelected), "aria-label": label });
     parts.title.textContent = label;
     parts.sign.textContent = this.#sign(key, isAnchored);
@@ -175,24 +175,21 @@ export class PieceLayer {
 
   // ---- classes and words
 
-  /** The class that is shown: the simulated one where there is one and it is asked for. */
+  /** The class that is shown, and what is known of it. */
   classOf(piece) {
-    const { store } = this;
-    const live = store.live.get(piece.row);
-    const simulated = this.usesSimulated ? store.simulated?.get(piece.row) : undefined;
-    const found = simulated ?? live;
-    return { key: found?.class ?? "", chance: found?.chance ?? null, isStale: Boolean(simulated?.stale), isAnchored: piece.anchored === "yes", word: live?.word ?? "" };
+    const live = this.store.live.get(piece.row);
+    return { key: live?.class ?? "", chance: live?.chance ?? null, isPale: isPale(live), isAnchored: piece.anchored === "yes", word: live?.word ?? "", live };
   }
 
   /** What is said of a piece: name, what it is, class, position. */
   label(piece) {
-    const { key, chance, isStale, word } = this.classOf(piece);
+    const { key, word, live } = this.classOf(piece);
     const unit = this.model.unit;
     const parts = [[piece.item, piece.description].filter(Boolean).join(", "), key ? t("class {word}", { word: describe(key).word }) : word || describe("").word];
-    if (chance !== null) parts.push(t("chance {chance}", { chance: percent(chance) }));
+    if (chanceText(live)) parts.push(t("chance {chance}", { chance: chanceText(live) }));
+    for (const [said] of basisWords(live)) parts.push(said);
     const sheet = this.store.sheet("Items");
     for (const name of piece.missing) parts.push(t("{size} is not known", { size: sheet.column(name)?.label ?? name }));
-    if (isStale) parts.push(t("simulated before it was changed"));
     parts.push(t("X {x}, Y {y}, angle {angle}°", { x: shownLength(piece.x, unit), y: shownLength(piece.y, unit), angle: number(piece.angle) }));
     return parts.join("; ");
   }

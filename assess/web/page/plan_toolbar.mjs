@@ -53,15 +53,9 @@ export class Toolbar {
       this.scene.showsRoutes = routes.checked;
       this.scene.drawRoutes();
     });
-    this.simulated = el("input", { type: "checkbox", checked: true });
-    this.simulated.addEventListener("change", () => {
-      this.scene.pieces.usesSimulated = this.simulated.checked;
-      this.model.dispatchEvent(new Event("classes"));
-    });
-    this.simulatedLabel = el("label", { class: "check", hidden: true }, this.simulated, t("Simulated classes"));
     const snap = el("label", { class: "check editing-only", title: t("Pieces snap to walls and to each other; Alt switches it off while dragging.") }, this.snap, t("Snap"));
     this.shown = el("div", { class: "plan-group shown", role: "group", "aria-label": t("Settings of the plan") }, snap,
-      el("label", { class: "inline", title: t("The floor that a piece may cover when it falls") }, t("Falls"), falls), el("label", { class: "check" }, routes, t("Routes")), this.simulatedLabel);
+      el("label", { class: "inline", title: t("The floor that a piece may cover when it falls") }, t("Falls"), falls), el("label", { class: "check" }, routes, t("Routes")));
   }
 
   #buildView() {
@@ -79,7 +73,6 @@ export class Toolbar {
     for (const button of this.toolGroup.children) button.setAttribute("aria-pressed", String(button.dataset.tool === tool.name));
     this.placeOptions.classList.toggle("unused", tool.name !== "place");
     this.routeOptions.classList.toggle("unused", tool.name !== "segment");
-    this.simulatedLabel.hidden = !this.store.simulated?.size;
     if (tool.name === "place") this.#drawKinds();
     if (tool.name === "segment") this.#drawRoutes(tool);
     for (const name of ["place", "segment"]) {

@@ -10,6 +10,7 @@ import { t, tn } from "./texts.mjs";
 const REFUSED = new Set([400, 413, 422]);
 const NAMED = 5;
 const TIMES_REPEATED = 3;
+const SOON_MS = 250; // between two looks for classes that have been simulated
 const SEVERITIES = ["error", "warning", "note"];
 
 class Store extends EventTarget {
@@ -27,12 +28,15 @@ class Store extends EventTarget {
   selection = { sheet: "Items", row: 0, at: 0, rows: [] };
   #sheets = new Map();
   #byCell = new Map();
-  #simulated = new Map();
   #queue = [];
   #kept = new KeptEdits();
   #sending = null;
   #stopped = false;
-  #liveVersion = null;
+  /** How far the simulation is: {state, done, of, message}. */
+  simulation = { state: "done", done: 0, of: 0, message: "" };
+  /** Which state of classes the page has; it changes with every version, and with every batch that was simulated. */
+  stamp = null;
+  #later = 0;
   #asking = null;
   #askAgain = false;
   #books = 0;
@@ -61,9 +65,8 @@ class Store extends EventTarget {
     this.#sheets = new Map((book?.sheets ?? []).map((sheet) => [sheet.name, new Sheet(sheet)]));
     if (book) book.sheets = book.sheets.map(({ rows, ...rest }) => rest); // the rows are held by the sheets now
     this.book = book;
-    this.#simulated = new Map();
     this.#takeLive({ version: 0, whole: true });
-    this.#liveVersion = null;
+    this.stamp = null;
     if (book?.state?.server !== this.state.server) this.#kept = new KeptEdits();
     if (book?.state) this.state = book.state;
     this.#tell("book");
@@ -99,15 +102,6 @@ class Store extends EventTarget {
   /** How many edits have not reached the server yet. */
   get waiting() {
     return this.#queue.length;
-  }
-
-  get simulated() {
-    return this.#simulated;
-  }
-
-  set simulated(rows) {
-    this.#simulated = rows ?? new Map();
-    this.#tell("simulated");
   }
 
   // ---- edits
@@ -371,6 +365,7 @@ class Store extends EventTarget {
 
   /** Ask for classes, live values and problems; one request at a time, and once more where something changed meanwhile. */
   refreshLive() {
+    clearTimeout(this.#later);
     this.#askAgain = true;
     this.#asking ??= this.#askAll().finally(() => (this.#asking = null));
     return this.#asking;
@@ -380,7 +375,7 @@ class Store extends EventTarget {
     while (this.#askAgain && this.book) {
       this.#askAgain = false;
       const book = this.#books;
-      const since = this.#liveVersion === null ? "" : `?since=${this.#liveVersion}`;
+      const since = this.stamp === null ? "" : `?since=${this.stamp}`;
       try {
         const answer = await get(`/api/live${since}`);
         if (book === this.#books) this.#takeLive(answer);
@@ -395,12 +390,15 @@ class Store extends EventTarget {
   #takeLive(answer) {
     if (answer.whole) this.live.clear();
     const items = answer.items ?? {};
-    (items.row ?? []).forEach((row, i) => {
-      const values = Object.fromEntries(Object.entries(items.values ?? {}).map(([at, all]) => [at, all[i]]));
-      this.live.set(row, { class: items.class[i], word: items.word[i], chance: items.chance[i], outside: items.outside[i], values });
+    const { row: rows = [], values: columns = {}, ...named } = items;
+    rows.forEach((row, i) => {
+      const values = Object.fromEntries(Object.entries(columns).map(([at, all]) => [at, all[i]]));
+      this.live.set(row, { ...Object.fromEntries(Object.entries(named).map(([name, all]) => [name, all[i]])), values });
     });
     for (const row of answer.gone ?? []) this.live.delete(row);
-    this.#liveVersion = answer.version;
+    this.stamp = answer.stamp ?? null;
+    this.simulation = answer.simulation ?? { state: "done", done: 0, of: 0, message: "" };
+    if (this.isSimulating) this.#later = setTimeout(() => this.refreshLive(), SOON_MS);
     this.counts = answer.counts ?? {};
     this.floors = answer.floors ?? [];
     this.liveError = answer.error ?? "";
@@ -408,6 +406,11 @@ class Store extends EventTarget {
     this.#takeProblems(answer.problems ?? []);
     this.#tell("live");
     this.#tell("problems");
+  }
+
+  /** Whether more simulated classes are to come. */
+  get isSimulating() {
+    return ["running", "waiting"].includes(this.simulation.state);
   }
 
   #takeProblems(problems) {

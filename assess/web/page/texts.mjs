@@ -69,6 +69,9 @@ export function percent(chance) {
   return `${number(100 * chance - 10 ** -MOST_DECIMALS, MOST_DECIMALS)}${PERCENT}`;
 }
 
+/** Two chances as a range without signs of percent: "15 to 26". */
+export const percents = (low, high) => t("{low} to {high}", { low: number(Math.round(100 * low)), high: number(Math.round(100 * high)) });
+
 /** A size of a file: 12 kB, 3.4 MB. */
 export function bytes(count) {
   return count < 1e6 ? `${number(Math.max(1, Math.round(count / 1e3)))} kB` : `${number(count / 1e6, 1)} MB`;

@@ -1,8 +1,8 @@
 // What changes: counts by class, states of routes and rooms, pieces of another class, each beside the present.
 
-import { CLASSES, badge, describe } from "./classes.mjs";
+import { CLASSES, badge, chanceText, describe, isPale } from "./classes.mjs";
 import { clear, el } from "./elements.mjs";
-import { countSimulated, jobs } from "./job.mjs";
+import { simulationText } from "./frame.mjs";
 import { percent, t, tn } from "./texts.mjs";
 
 const MOST = 300;
@@ -35,7 +35,7 @@ export class Results {
     const keys = [...CLASSES, ""];
     const most = Math.max(1, ...keys.flatMap((key) => [before.counts[key] ?? 0, after.counts[key] ?? 0]));
     const rows = keys.map((key) => this.#bars(key, before.counts[key] ?? 0, after.counts[key] ?? 0, most));
-    return el("section", { class: "card" }, el("h2", { text: t("Pieces by class, by the formulas") }), simulatedNote(),
+    return el("section", { class: "card" }, el("h2", { text: t("Pieces by class") }), provisional(this.#answer),
       el("table", { class: "bars" }, el("thead", null, el("tr", null, el("th", { scope: "col", text: t("Class") }), el("th", { scope: "col", class: "num", text: t("now") }), el("th", { scope: "col", class: "num", text: t("then") }), el("th", { scope: "col", class: "num", text: t("change") }), el("td", { class: "bar-cell" }))), el("tbody", null, rows)));
   }
 
@@ -91,22 +91,15 @@ export class Results {
     const head = el("h2", { text: t("Pieces of another class ({n})", { n: changed.length }) });
     if (!changed.length) return el("section", { class: "card" }, head, el("p", { class: "muted", text: t("No piece changes its class.") }));
     const isAnchored = new Set(anchored);
-    const cell = (one, row, isThen) => el("td", null, one?.class ? [badge(one.class), " ", shownChance(one.chance)] : isThen && isAnchored.has(row) ? `⚓ ${t("anchored")}` : one?.word || "–");
+    const cell = (one, row, isThen) => el("td", null, one?.class ? [badge(one.class, { isPale: isPale(one) }), " ", el("span", { class: "chance", text: chanceText(one) })] : isThen && isAnchored.has(row) ? `⚓ ${t("anchored")}` : one?.word || "–");
     const rows = changed.slice(0, MOST).map((one) => el("tr", null, el("th", { scope: "row", class: "chance", text: items?.value(one.row, at) ?? one.row }), el("td", { text: about === undefined ? "" : items.value(one.row, about) ?? "" }), cell(one.was, one.row, false), cell(one.is, one.row, true)));
     const more = changed.length - MOST;
     return el("section", { class: "card" }, head, wide(head.textContent, el("table", { class: "plain" }, el("thead", null, el("tr", null, [t("Item"), t("Description"), t("now"), t("then")].map((text) => el("th", { scope: "col", text })))), el("tbody", null, rows))), more > 0 && el("p", { class: "muted", text: tn("{n:,} more", "{n:,} more", more) }));
   }
 }
 
-/** Why these numbers are not those of a simulation, where there is one. */
-function simulatedNote() {
-  const found = countSimulated();
-  if (!found) return null;
-  const counts = CLASSES.map((key) => t("{word}: {n:,}", { word: describe(key).word, n: found[key] ?? 0 })).join(", ");
-  const n = jobs.current.stale.length;
-  const since = n ? tn("{n:,} row changed since.", "{n:,} rows changed since.", n) : "";
-  return el("p", { class: "hint basis-note", text: t("What if goes by the formulas, so its numbers are not those of the simulation, which found {counts}. {since}", { counts, since }).trim() });
-}
+/** How far the simulation is, while classes go by the formula. */
+const provisional = ({ simulation }) => (simulation.state === "done" ? null : el("p", { class: "hint basis-note", text: simulationText(simulation) }));
 
 /** A table that scrolls where it is wider than its card, by keys as well. */
 const wide = (label, table) => el("div", { class: "scroll-x", tabIndex: 0, role: "region", "aria-label": label }, table);
@@ -115,7 +108,7 @@ const say = (state) => ({ open: t("open"), doubtful: t("doubtful"), not_known: t
 
 const shownChance = (chance) => el("span", { class: "chance", text: percent(chance) });
 
-const byRow = (items) => new Map(items.row.map((row, i) => [row, { class: items.class[i], word: items.word[i], chance: items.chance[i] }]));
+const byRow = ({ row, ...named }) => new Map(row.map((one, i) => [one, Object.fromEntries(Object.entries(named).map(([name, all]) => [name, all[i]]))]));
 
 function join(before, after, nameOf, kindOf) {
   const was = new Map(before.map((one) => [nameOf(one), one]));

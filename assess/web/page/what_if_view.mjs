@@ -1,17 +1,17 @@
 // The tab "What if": another shaking, another scenario, pieces anchored; what changes, beside the present. Nothing is saved.
 
 import { post } from "./api.mjs";
-import { CLASSES, badge, describe } from "./classes.mjs";
+import { CLASSES, badge, chanceText, describe, isPale } from "./classes.mjs";
 import { clear, el } from "./elements.mjs";
-import { countSimulated, jobs } from "./job.mjs";
 import { ask } from "./messages.mjs";
 import { PlanEdits } from "./plan_edits.mjs";
 import { PlanModel, nameKey } from "./plan_model.mjs";
 import { isFilled } from "./sheet.mjs";
-import { number, percent, t, tn } from "./texts.mjs";
+import { number, t, tn } from "./texts.mjs";
 import { Results } from "./what_if_results.mjs";
 
 const ASK_MS = 150;
+const AGAIN_MS = 400; // until all is simulated
 const MOST = 300;
 /** Steps of the slider: about the same share apart. */
 const SCALES = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.35, 1.5, 1.75, 2, 2.25, 2.5, 2.75, 3];
@@ -29,6 +29,7 @@ class WhatIfView {
   #asked = 0;
   #isShown = false;
   #answer = null;
+  #stamp = null;
   #ticked = new Set(); // rows
   #scale = 1;
   #scenario = null;
@@ -49,8 +50,8 @@ class WhatIfView {
     this.error = el("p", { class: "error-text", role: "alert", hidden: true });
     this.status = el("div", { class: "unseen", role: "status", "aria-live": "polite" });
     this.write = el("button", { type: "button", class: "primary editing-only", text: t("Write into the workbook…"), disabled: true, on: { click: () => this.#write() } });
-    const reset = el("button", { type: "button", text: t("Back to the present"), on: { click: () => this.#reset() } });
-    const banner = el("div", { class: "what-if-banner" }, el("p", null, el("b", { text: t("What if: nothing is saved.") }), " ", t("By the formulas; the workbook stays as it is until you write into it.")), el("div", { class: "buttons" }, reset, this.write));
+    const reset = el("button", { type: "button", text: t("Reset"), on: { click: () => this.#reset() } });
+    const banner = el("div", { class: "what-if-banner" }, el("p", null, el("b", { text: t("What if: nothing is saved.") }), " ", t("The workbook stays as it is until you write into it.")), el("div", { class: "buttons" }, reset, this.write));
     const controls = el("section", { class: "what-if-controls", "aria-label": t("What to change") }, this.#scaleField(), this.#scenarioField(), this.#firstField(), this.#pieceList());
     this.root.append(banner, el("div", { class: "what-if-main" }, controls, el("div", { class: "what-if-results" }, this.error, this.results.node)), this.status);
   }
@@ -90,8 +91,7 @@ class WhatIfView {
       this.#drawFirst();
       this.#askSoon();
     });
-    this.firstBasis = el("span", { class: "hint" });
-    return el("label", { class: "field" }, el("span", { class: "field-name", text: t("Anchor the first entries of the work list") }), el("div", { class: "slider" }, this.firstSlider, this.firstText), this.firstBasis);
+    return el("label", { class: "field" }, el("span", { class: "field-name", text: t("Anchor the first entries of the work list") }), el("div", { class: "slider" }, this.firstSlider, this.firstText));
   }
 
   #drawFirst() {
@@ -103,8 +103,6 @@ class WhatIfView {
     const text = t("{n} of {all}", { n: this.#first, all: entries });
     this.firstText.textContent = text;
     this.firstSlider.setAttribute("aria-valuetext", text);
-    const simulated = countSimulated() ? (jobs.current.before_after?.entries ?? 0) : null;
-    this.firstBasis.textContent = simulated === null ? t("The list by the formulas.") : tn("The list by the formulas; by the simulation it has {n:,} entry.", "The list by the formulas; by the simulation it has {n:,} entries.", simulated);
   }
 
   #pieceList() {
@@ -124,23 +122,17 @@ class WhatIfView {
       this.#ticked.clear();
       if (this.#isShown) this.#askSoon(0);
     });
-    store.addEventListener("simulated", () => {
-      if (!this.#isShown || !this.#answer) return;
-      this.#drawFirst();
-      this.results.draw(this.#answer);
-    });
     store.addEventListener("live", () => {
       if (!this.#isShown || !store.book) return;
       this.#drawPieces();
-      if (this.#answer?.version !== store.state.version) this.#askSoon();
+      if (this.#stamp !== store.stamp) this.#askSoon();
     });
   }
 
   show() {
     this.#isShown = true;
     this.#drawPieces();
-    if (this.#answer?.version !== this.store.state.version) this.#askSoon(0);
-    else this.#take(this.#answer); // a simulation may have ended meanwhile
+    if (this.#stamp !== this.store.stamp) this.#askSoon(0);
   }
 
   hide() {
@@ -159,7 +151,7 @@ class WhatIfView {
       return column ? String(items.value(row, column.at) ?? "") : "";
     };
     return [...this.store.live].filter(([, live]) => live.class).map(([row, live]) => ({
-      row, name: text(row, "item"), about: [text(row, "description") || text(row, "type"), text(row, "room")].filter(Boolean).join(", "), key: live.class, chance: live.chance ?? 0,
+      row, name: text(row, "item"), about: [text(row, "description") || text(row, "type"), text(row, "room")].filter(Boolean).join(", "), key: live.class, chance: live.chance ?? 0, live,
     })).filter((one) => one.name).sort((a, b) => CLASSES.indexOf(a.key) - CLASSES.indexOf(b.key) || b.chance - a.chance || a.row - b.row);
   }
 
@@ -184,7 +176,7 @@ class WhatIfView {
     const isListed = byList.has(one.row) && !isTicked;
     const box = el("input", { type: "checkbox", checked: isTicked || isListed, disabled: isListed, dataset: { tick: one.row } });
     box.addEventListener("change", () => this.#tick(one.row, box.checked));
-    return el("li", null, el("label", { class: "tick", title: isListed ? t("Anchored by the list of what to fix") : one.about }, box, badge(one.key), el("b", { text: one.name }), el("span", { class: "about", text: one.about }), el("span", { class: "end", text: percent(one.chance) })));
+    return el("li", null, el("label", { class: "tick", title: isListed ? t("Anchored by the list of what to fix") : one.about }, box, badge(one.key, { isPale: isPale(one.live) }), el("b", { text: one.name }), el("span", { class: "about", text: one.about }), el("span", { class: "end", text: chanceText(one.live) })));
   }
 
   #tick(row, on) {
@@ -223,8 +215,12 @@ class WhatIfView {
     this.#abort = new AbortController();
     const request = { scale: this.#scale, anchor: this.#names(), first: this.#first, ...(this.#scenario === null ? {} : { scenario: this.#scenario }) };
     try {
+      const { stamp } = this.store;
       const answer = await post("/api/what-if", request, this.#abort.signal);
-      if (asked === this.#asked) this.#take(answer);
+      if (asked !== this.#asked) return;
+      this.#stamp = stamp;
+      this.#take(answer);
+      if (["running", "waiting"].includes(answer.simulation.state)) this.#timer = setTimeout(() => this.#ask(), AGAIN_MS);
     } catch (error) {
       if (error.name === "AbortError" || asked !== this.#asked) return;
       this.#fail(error.message);
