@@ -90,7 +90,7 @@ def _of_methods() -> Iterator[tuple[str, str]]:
 
 
 def _of_columns() -> Iterator[tuple[str, str]]:
-    from assess.workbook.schema import LIVE, SHEETS, WORKINGS
+    from assess.workbook.schema import GROUPS, LIVE, SHEETS, WORKING_GROUP, WORKINGS
 
     for sheet in SHEETS:
         yield sheet.name, "assess/workbook/schema.py"
@@ -98,7 +98,7 @@ def _of_columns() -> Iterator[tuple[str, str]]:
             for text in (*column.labels, column.help, column.default, *column.choices, *column.offered):
                 if any(character.isalpha() for character in text):
                     yield text, "assess/workbook/schema.py"
-    for label in (*LIVE, *WORKINGS):
+    for label in (*LIVE, *WORKINGS, *(name for name, _ in GROUPS), WORKING_GROUP):
         yield label.split(" [")[0], "assess/workbook/schema.py"
 
 

@@ -10,14 +10,14 @@ from pathlib import Path
 from threading import RLock
 from typing import Any, Literal, Self
 
-from assess.errors import AssessError, OutputError, WorkbookError
+from assess.errors import AssessError, InputError, OutputError, WorkbookError
 from assess.i18n import fill
 from assess.pipeline.corrected import LiveRows, find_live_rows, find_results
-from assess.web.cell_edits import Contents, EditsRefused, History, Step, say, take_edits
+from assess.web.cell_edits import Contents, EditsRefused, History, Step, change_rows, say, take_edits
 from assess.web.columns import PageSheet, find_sheets, find_units, show
 from assess.web.disk_file import ChangedOutsideError, DiskFile, find_hash
 from assess.web.file_names import FILES, add_file, list_missing
-from assess.web.request_errors import CONFLICT, RequestError
+from assess.web.request_errors import CONFLICT, UNUSABLE, RequestError
 from assess.web.simulating import Simulator
 from assess.web.snapshot import Snapshot
 from assess.workbook.kept_files import KeptFiles
@@ -148,10 +148,34 @@ class Book:
             new = {place: workbook.sheets[place[0]].as_read(place[1:], value) for place, value in wanted.items()}
             old = {place: workbook.sheets[place[0]].value(place[1:]) for place in new}
             changed = {place: value for place, value in new.items() if not is_same(old[place], value)}
+            step = Step(label, {place: old[place] for place in changed}, changed)
             if changed:
-                self._apply(changed)
-                self._history.add(Step(label, {place: old[place] for place in changed}, changed))
+                self._apply(step)
+                self._history.add(step)
             return self._describe_change(new)
+
+    def change_rows(
+        self, version: int, sheet: str, do: object, at: object, count: object, to: object = None
+    ) -> dict[str, Any]:
+        """Insert, delete or move rows of a sheet, as `assess.web.cell_edits.change_rows`; one step of the history.
+
+        Raises VersionError if the book has another version; InputError if they cannot be changed so.
+        """
+        with self._lock:
+            self._check_version(version)
+            found, workbook = self.sheets.get(sheet), self._now.workbook
+        if found is None:
+            raise InputError.about("The sheet is not known.")
+        try:
+            step = change_rows(found, workbook, do, at, count, to)
+        except WorkbookError as error:
+            one = error.problems[0]
+            why = fill("{place}: {why}", place=one.place, why=one.message)
+            raise RequestError(why, UNUSABLE, one.fix) from None
+        with self._lock:
+            self._check_version(version)
+            self._history.add(step)
+            return self._go(step)
 
     def undo(self, version: int) -> dict[str, Any]:
         """Take the last step back; raises VersionError if the book has another version."""
@@ -165,24 +189,29 @@ class Book:
             self._check_version(version)
             return self._go(self._history.forward())
 
-    def _go(self, contents: Contents) -> dict[str, Any]:
-        if contents:
-            self._apply(contents)
-        return self._describe_change(contents)
+    def _go(self, step: Step | None) -> dict[str, Any]:
+        if step is None:
+            return self._describe_change({})
+        self._apply(step)
+        inserted = [row for one in step.shifts if one.back(one.at) is None for row in range(one.at, one.at + one.count)]
+        cells = self._now.workbook.sheets[step.label].cells if inserted else {}
+        found = {(step.label, row, at): None for row in inserted for at in cells.get(row, ())}
+        rows = [[step.label, one.at, one.count, getattr(one, "to", None)] for one in step.shifts]
+        return {**self._describe_change({**step.after, **found}), "rows": rows}
 
     def _check_version(self, version: int) -> None:
         if version != self.version:
             raise VersionError(self.state())
 
-    def _apply(self, contents: Contents) -> None:
+    def _apply(self, step: Step) -> None:
         by_sheet: dict[str, dict[tuple[int, int], Any]] = {}
-        for (sheet, row, at), value in contents.items():
+        for (sheet, row, at), value in step.after.items():
             by_sheet.setdefault(sheet, {})[row, at] = value
         self.version += 1
-        self._now = self._snap(self._now.workbook.put(by_sheet))
+        self._now = self._snap(step.books[1] if step.books else self._now.workbook.put(by_sheet))
         self._compare()
-        columns = ((sheet, self.sheets[sheet].find(row, at)) for sheet, row, at in contents)
-        if any(one and one.column and (sheet, one.column.name) in FILES for sheet, one in columns):
+        columns = ((sheet, self.sheets[sheet].find(row, at)) for sheet, row, at in step.after)
+        if step.books or any(one and one.column and (sheet, one.column.name) in FILES for sheet, one in columns):
             self._missing = None
 
     def _compare(self) -> None:

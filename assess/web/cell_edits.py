@@ -1,7 +1,10 @@
-"""Edits of cells as they come from outside: each is taken as its column asks, or refused; steps to undo and redo."""
+"""Edits of cells and rows as they come from outside: taken as the column asks, or refused; steps to undo and redo."""
 
+import ast
+import math
+import operator
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,6 +15,7 @@ from assess.web.request_errors import UNUSABLE, RequestError
 from assess.workbook.habits import CellError
 from assess.workbook.open import MAX_COLUMNS, MAX_ROWS
 from assess.workbook.patch import LARGEST_NUMBER, LONGEST_TEXT, Value, read_back
+from assess.workbook.row_shift import RowMove, RowShift, Shift
 from assess.workbook.store import Workbook
 from assess.workbook.values import is_blank, is_converted, is_free, understand
 
@@ -26,11 +30,28 @@ Contents = Mapping[CellPlace, Any]
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One edit: the cells that it changed, before and after."""
+    """One change: the cells that it changed, before and after.
+
+    `shifts`, `books`: of one that inserts, deletes or moves rows of the sheet `label`, its shifts in their order, and
+    the whole workbook before and after.
+    """
 
     label: str
     before: Contents
     after: Contents
+    shifts: tuple[Shift, ...] = ()
+    books: tuple[Workbook, Workbook] | None = None
+
+    def turn(self) -> "Step":
+        """Return the step that takes it back."""
+        shifts = tuple(one.reverse() for one in reversed(self.shifts))
+        return Step(self.label, self.after, self.before, shifts, self.books and (self.books[1], self.books[0]))
+
+    @property
+    def size(self) -> int:
+        """About how many cells it keeps."""
+        rows = self.books[0].sheet(self.label) if self.books else None
+        return len(self.after) + (len(rows.marks.formulas) + len(rows.cells) if rows else 0) // 2
 
 
 @dataclass(slots=True)
@@ -43,24 +64,24 @@ class History:
     def add(self, step: Step) -> None:
         """Take in a step that has been done; those that were undone are forgotten."""
         self.steps[self.at :] = [step]
-        cells = sum(len(one.after) for one in self.steps)
+        cells = sum(one.size for one in self.steps)
         while len(self.steps) > MOST_STEPS or (cells > MOST_CELLS and len(self.steps) > 1):
-            cells -= len(self.steps.pop(0).after)
+            cells -= self.steps.pop(0).size
         self.at = len(self.steps)
 
-    def back(self) -> Contents:
-        """Return the cells as they were before the last step, nothing where there is none; it counts as undone."""
+    def back(self) -> Step | None:
+        """Return the step that takes the last one back, None where there is none; that counts as undone."""
         if self.at == 0:
-            return {}
+            return None
         self.at -= 1
-        return self.steps[self.at].before
+        return self.steps[self.at].turn()
 
-    def forward(self) -> Contents:
-        """Return the cells as the next step has them, nothing where there is none; it counts as done."""
+    def forward(self) -> Step | None:
+        """Return the next step, None where there is none; it counts as done."""
         if self.at == len(self.steps):
-            return {}
+            return None
         self.at += 1
-        return self.steps[self.at - 1].after
+        return self.steps[self.at - 1]
 
 
 MOST_EDITS = 500_000
@@ -70,6 +91,9 @@ COMPUTED_KINDS = ("number", "count", "date", "choice", "flag")
 DIGITS = 6
 """Significant digits of a number that was converted from another unit."""
 _PLAIN_NUMBER = re.compile(r"-?(?:0|[1-9][0-9]*)(?:\.[0-9]*)?")
+_SUM = re.compile(r"\s*=([-+*/(). 0-9]{1,100})", re.ASCII)
+_DECIMAL_COMMA = re.compile(r"(?<=[0-9]),(?=[0-9]{1,2}(?![0-9])|[0-9]{4})")
+_FORMULA = fill("Formulas are not supported in this sheet. Enter the result instead.")
 
 _TOO_LONG = fill("the text is longer than a cell holds: {most:,} characters.", most=LONGEST_TEXT)
 
@@ -103,6 +127,7 @@ def take_edits(edits: object, sheets: Mapping[str, PageSheet], workbook: Workboo
         sheet, row, at, value = _take_apart(edit)
         column, why = _find_column(sheets.get(sheet), row, at)
         if column is not None:
+            value = _calculate(column, value)
             why = workbook.find_lock(sheet, (row, at)) or _refuse_value(column, value)
         if column is None or why:
             refused.append([sheet, row, at, say(why)])
@@ -157,7 +182,74 @@ def _refuse_value(column: PageColumn, value: Value) -> str:
     if len(value) > LONGEST_TEXT:
         return _TOO_LONG
     is_formula = value.lstrip().startswith("=") and column.kind in COMPUTED_KINDS
-    return fill("formulas are not computed here: type the value.") if is_formula else ""
+    return _FORMULA if is_formula else ""
+
+
+def _calculate(column: PageColumn, value: Value) -> Value:
+    """Return the result of a formula of numbers alone, such as =18*10, in a column of numbers; else the value."""
+    if column.kind not in ("number", "count") or not isinstance(value, str):
+        return value
+    found = _SUM.fullmatch(_DECIMAL_COMMA.sub(".", value))
+    try:
+        result = _compute(ast.parse(found[1].strip(), mode="eval").body) if found else math.nan
+    except (SyntaxError, ValueError, ArithmeticError):
+        return value
+    rounded = float(f"{result:.12g}")  # without the noise of binary fractions
+    return value if not math.isfinite(rounded) else int(rounded) if rounded.is_integer() else rounded
+
+
+def _compute(node: ast.expr) -> float:
+    if isinstance(node, ast.Constant) and isinstance(node.value, int | float):
+        return float(node.value)
+    if isinstance(node, ast.UnaryOp) and type(node.op) in _SIGNS:
+        return _SIGNS[type(node.op)](_compute(node.operand))
+    if isinstance(node, ast.BinOp) and type(node.op) in _OPERATIONS:
+        return _OPERATIONS[type(node.op)](_compute(node.left), _compute(node.right))
+    raise ValueError
+
+
+_SIGNS: Mapping[type, Callable[[float], float]] = {ast.UAdd: operator.pos, ast.USub: operator.neg}
+_OPERATIONS: Mapping[type, Callable[[float, float], float]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
+}  # fmt: skip
+
+
+# ---------------------------------------------------------------- rows
+
+
+def change_rows(sheet: PageSheet, workbook: Workbook, do: object, at: object, count: object, to: object) -> Step:
+    """Return the step that inserts rows before row `at`, deletes them from it on, or moves them before row `to`.
+
+    A table keeps its first row: rows above it are inserted below it, and change places; of all rows the first is only
+    cleared. So whatever is said of all rows, such as a choice, holds for the new ones. Raises InputError if the
+    arguments name no rows of a table; WorkbookError if something in the workbook cannot follow with certainty.
+    """
+    first, name = sheet.header + 1, sheet.sheet.name
+    if not (type(at) is int and type(count) is int and (to is None or type(to) is int)):
+        raise InputError.about("Rows have to be given by numbers.")
+    last = at + count - 1
+    if not sheet.found or not sheet.header or not first <= at <= last <= MAX_ROWS:
+        raise InputError.about("These rows do not belong to a table that is read.")
+    before: Contents = {}
+    if do == "insert":
+        if workbook.sheet(name).last_row + count > MAX_ROWS:
+            raise InputError.about("The sheet has no room for more rows.")
+        below = at + 1 if at == first else at
+        book = workbook.insert_rows(name, below, count, like=below - 1)
+        shifts: tuple[Shift, ...] = (RowShift(at, count),)
+        book = book if below == at else book.move_rows(name, below, count, at)
+    elif do == "delete":
+        is_all = at == first and last >= workbook.sheet(name).last_row
+        cells = workbook.sheet(name).cells.get(at, {}) if is_all else {}
+        before = {(name, at, one): value for one, value in cells.items() if not workbook.find_lock(name, (at, one))}
+        book = workbook.put({name: {place[1:]: None for place in before}}) if before else workbook
+        shifts = (RowShift(at + is_all, is_all - count),) if count > is_all else ()
+        book = book.delete_rows(name, at + is_all, count - is_all) if shifts else book
+    elif do == "move" and type(to) is int and first <= to <= MAX_ROWS + 1 and not at <= to <= last + 1:
+        book, shifts = workbook.move_rows(name, at, count, to), (RowMove(at, count, to),)
+    else:
+        raise InputError.about("Rows are inserted, deleted, or moved to another place.")
+    return Step(name, before, dict.fromkeys(before), shifts, (workbook, book))
 
 
 def _take_value(column: PageColumn, value: Value) -> Value:

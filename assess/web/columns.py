@@ -6,14 +6,14 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from assess.i18n import load_catalogue, speaking
+from assess.i18n import gettext, load_catalogue, speaking
 from assess.units import QUANTITIES
 from assess.workbook.lists import FROZEN, PLACES
 from assess.workbook.names import find_live, is_live, split_header, translate, translate_choices
 from assess.workbook.open import MAX_ROWS, UNSAVED, Percent
 from assess.workbook.parse import Table, Tables
 from assess.workbook.plain_rows import column_letters
-from assess.workbook.schema import CLASS, SHEETS, Column, Sheet
+from assess.workbook.schema import CLASS, GROUPS, ITEMS, SHEETS, WORKING_GROUP, Column, Sheet
 from assess.workbook.store import Workbook, Worksheet
 from assess.workbook.template import describe
 from assess.workbook.values import is_blank, read_text
@@ -63,7 +63,7 @@ class PageColumn:
             "label": self.label, "unit": self.unit,
             "factor": QUANTITIES.get(one.quantity, {}).get(self.unit, 1.0) if one else 1.0, "kind": self.kind,
             "help": "", "choices": [], "offered": [], "source": "", "required": False, "width": OWN_WIDTH,
-            "hidden": self.is_hidden,
+            "hidden": self.is_hidden, "group": "", "heading": "",
         }  # fmt: skip
         if one:
             is_named = one.kind in ("choice", "flag")
@@ -126,8 +126,19 @@ class PageSheet:
             "name": self.sheet.name, "title": self.title, "layout": self.sheet.layout, "found": self.found,
             "header_row": self.header, "last_row": last, "capacity": last if is_form else MAX_ROWS,
             "frozen": 0 if is_form else self._count_frozen(),
-            "columns": [one.describe(self.language) for one in self.columns.values()], "rows": rows,
+            "columns": [{**one.describe(self.language), **self._find_group(one)} for one in self.columns.values()],
+            "rows": rows,
         }  # fmt: skip
+
+    def _find_group(self, column: PageColumn) -> dict[str, str]:
+        """Return the group of a column of Items and its heading; nothing for the user's own, and in other sheets."""
+        if self.sheet is not ITEMS or (column.column is None and not column.live):
+            return {}
+        fields = [one.name for one in self.sheet.columns]
+        at = fields.index(column.column.name) if column.column else 0
+        group = [name for name, first in GROUPS if fields.index(first) <= at][-1]
+        group = WORKING_GROUP if column.live and column.live != CLASS else group
+        return {"group": group, "heading": gettext(group)}
 
     def _count_frozen(self) -> int:
         """Return how many columns at the left stay in view: as in an empty workbook where they stand as there."""

@@ -11,6 +11,7 @@ import math
 import re
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -129,6 +130,11 @@ def _edit(asked: Asked) -> Answer:
     return _change(asked, lambda book, version: book.edit(version, edits, label))
 
 
+def _change_rows(asked: Asked) -> Answer:
+    sheet, *rest = (asked.body.get(name) for name in ("sheet", "do", "at", "count", "to"))
+    return _change(asked, lambda book, version: book.change_rows(version, str(sheet), *rest))
+
+
 def _change(asked: Asked, change: "Callable[[Book, int], dict[str, Any]]") -> Answer:
     """Change the workbook; VersionError where the page has another opening of it, or another book."""
     from assess.web.book import VersionError
@@ -139,6 +145,10 @@ def _change(asked: Asked, change: "Callable[[Book, int], dict[str, Any]]") -> An
     if not isinstance(version, int) or isinstance(version, bool):
         raise RequestError(fill("The request does not name the version of the workbook."), UNUSABLE)
     answer = change(book, version)
+    if answer.get("rows"):  # at once: edits that the page keeps until they are saved name other rows than the file has
+        with suppress(AssessError):
+            book.save()
+        answer["state"] = book.state()
     asked.session.note_edit()
     return _note_download(asked, answer)
 
@@ -285,7 +295,8 @@ TABLE: tuple[tuple[str, Mapping[str, Handler]], ...] = (
         "/api/texts": lambda asked: describe_texts(asked.query.get("language") or asked.language),
     }),
     ("POST", {
-        "/api/edit": _edit, "/api/close": _close, "/api/what-if": partial(_evaluate, "what-if"),
+        "/api/edit": _edit, "/api/rows": _change_rows, "/api/close": _close,
+        "/api/what-if": partial(_evaluate, "what-if"),
         "/api/save": _after(lambda asked: asked.book.save(), lambda asked: asked.book.state()),
         "/api/reload": _after(lambda asked: asked.book.reload(), lambda asked: asked.book.describe()),
         "/api/undo": lambda asked: _change(asked, lambda book, version: book.undo(version)),

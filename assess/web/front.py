@@ -39,7 +39,7 @@ LOG = logging.getLogger("assess.web")
 API = "/api/"
 POLLED = ("/api/state", "/api/job", MODELS)
 """What a page asks by itself: it is not its user who asks."""
-AT_ONCE = ("/api/edit", "/api/undo", "/api/redo", "/api/job/cancel", "/api/import/cancel")
+AT_ONCE = ("/api/edit", "/api/rows", "/api/undo", "/api/redo", "/api/job/cancel", "/api/import/cancel")
 """What takes no time, and does not wait for what does."""
 MOST_WAITING = 20
 """Requests of a session that wait for their turn."""

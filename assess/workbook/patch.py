@@ -35,7 +35,7 @@ from assess.workbook.open import (
     unreadable,
 )
 from assess.workbook.plain_rows import column_letters, split_address, split_range
-from assess.workbook.row_shift import Growth, NotMovedError, PartShift, RowShift, shift_drawing, shift_shapes
+from assess.workbook.row_shift import Growth, NotMovedError, PartShift, Shift, shift_drawing, shift_shapes
 
 Value = float | str | bool | None
 """What a cell may hold; None leaves it blank."""
@@ -63,7 +63,7 @@ Values = Mapping[Place, Value]
 class SheetEdits:
     """What is to be written into one sheet.
 
-    * `shifts`: Rows inserted and deleted, in their order, before all else.
+    * `shifts`: Rows inserted, deleted and moved, in their order, before all else.
     * `values`: A cell keeps its format; a formula in it is replaced; None leaves it blank. A cell or row that is
       missing is added in its place, with the format of its row or column.
     * `results`: The stored results of formulas, which stay; None takes the result out, so that every program computes
@@ -74,7 +74,7 @@ class SheetEdits:
 
     values: Values = field(default_factory=dict)
     results: Values = field(default_factory=dict)
-    shifts: tuple[RowShift, ...] = ()
+    shifts: tuple[Shift, ...] = ()
     growth: Growth = field(default_factory=Growth)
 
 
@@ -134,8 +134,8 @@ _ALSO = ("xl/charts/", "xl/pivotCache/pivotCacheDefinition", "xl/ctrlProps/", "x
 """Where parts lie that name cells of any sheet."""
 
 
-def _shift_rows(book: Book, sheet: str, shift: RowShift) -> None:
-    """Insert or delete rows of a sheet; whatever refers to its cells follows."""
+def _shift_rows(book: Book, sheet: str, shift: Shift) -> None:
+    """Insert, delete or move rows of a sheet; whatever refers to its cells follows."""
     own = {path: kind for kind, path in _list_related(book, book.sheets[sheet])}
     for path in book.archive.namelist():
         kind = own.get(path, "")

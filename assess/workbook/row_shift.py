@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape, unescape
+from typing import ClassVar
 
 from assess.i18n import Text, fill
 from assess.workbook.open import SHEET_COLUMNS, SHEET_ROWS, Area
@@ -40,6 +41,10 @@ class RowShift:
             return row
         return None if row < self.at + self.count else row - self.count
 
+    def reverse(self) -> "RowShift":
+        """Return the shift that takes it back, but for what stood in rows that are deleted."""
+        return RowShift(self.at, -self.count)
+
     def area(self, area: Area) -> Area | None:
         """Return where an area comes to lie; None if all its rows are deleted."""
         left, right, top, bottom = area
@@ -52,6 +57,57 @@ class RowShift:
             return area
         move = self.count
         return left, right, top + move * (top >= self.at), min(bottom + move * (bottom >= self.at), SHEET_ROWS)
+
+
+@dataclass(frozen=True, slots=True)
+class RowMove:
+    """Rows from `at` on that come to lie before row `to`, which is numbered as before; no row is added or lost.
+
+    An area that holds all rows that come to lie elsewhere stays; one within the moved rows, or within those that
+    they pass, follows; another one becomes what it is after the rows are inserted there and deleted here.
+    """
+
+    at: int
+    count: int
+    to: int
+    like: ClassVar[int] = 0
+
+    @property
+    def span(self) -> tuple[int, int]:
+        """The first and the last of all rows that come to lie elsewhere."""
+        return min(self.at, self.to), max(self.at + self.count, self.to) - 1
+
+    def row(self, row: int) -> int:
+        """Return where a row comes to lie."""
+        first, last = self.span
+        if not first <= row <= last:
+            return row
+        passed, is_up = last - first + 1 - self.count, self.to < self.at
+        if self.at <= row < self.at + self.count:
+            return row - passed if is_up else row + passed
+        return row + self.count if is_up else row - self.count
+
+    def back(self, row: int) -> int:
+        """Return where a row lay before."""
+        return self.reverse().row(row)
+
+    def reverse(self) -> "RowMove":
+        """Return the move that takes it back."""
+        at = self.row(self.at)
+        return RowMove(at, self.count, self.at + (self.count if self.at > at else 0))
+
+    def area(self, area: Area) -> Area:
+        """Return where an area comes to lie."""
+        left, right, top, bottom = area
+        first, last = self.span
+        if bottom < first or top > last or (top <= first and bottom >= last):
+            return area
+        is_inside = first <= top and bottom <= last
+        if is_inside and self.row(bottom) - self.row(top) == bottom - top:
+            return left, right, self.row(top), self.row(bottom)
+        gone = self.at if self.to > self.at else self.at + self.count
+        inserted = RowShift(self.to, self.count).area(area) or area
+        return RowShift(gone, -self.count).area(inserted) or area
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +130,9 @@ class Growth:
         return Growth(tuple(one for one in self.blocks if not one[2].isdisjoint(own)))
 
 
-Move = RowShift | Growth
+Shift = RowShift | RowMove
+"""What becomes of the rows of a sheet."""
+Move = Shift | Growth
 """Where areas come to lie."""
 
 
@@ -212,7 +270,7 @@ class PartShift:
 
     def __init__(self, sheet: str, is_own: bool, move: Move) -> None:
         self.sheet, self.is_own, self.move = sheet, is_own, move
-        self.shift = move if isinstance(move, RowShift) else None
+        self.shift = None if isinstance(move, Growth) else move
         self.areas = AREAS if self.shift else GROWING
         self.out: list[str] = []
         self.open: list[tuple[str, int]] = []
@@ -237,7 +295,7 @@ class PartShift:
             self.taken = [area for one in validations for part in one.split() if (area := split_range(part))]
         else:
             pieces = [text, "", ""]
-            if self.shift and self.is_own and self.shift.count > 0 and self.shift.like:
+            if isinstance(self.shift, RowShift) and self.is_own and self.shift.count > 0 and self.shift.like:
                 self.new_rows = self._copy_rows(text, self.shift)
         self._read(pieces[0], pieces[0].find("<", pieces[0].find("?>") + 2 if "<?xml" in pieces[0][:10] else 0))
         self.out.append(pieces[1])
@@ -247,6 +305,8 @@ class PartShift:
         moved, before = "".join(self.out), ""
         while self.has_cut and moved != before:
             before, moved = moved, _EMPTY.sub("", moved)
+        if isinstance(self.shift, RowMove) and self.is_own:
+            moved = _ROWS.sub(lambda found: found[1] + _sort_rows(found[3]) + found[4], moved, count=1)
         return moved.encode()
 
     def _read(self, text: str, begin: int) -> None:
@@ -315,7 +375,7 @@ class PartShift:
 
     # ------------------------------------------------------------ rows and cells
 
-    def _move_row(self, attributes: str, shift: RowShift | None) -> str | None:
+    def _move_row(self, attributes: str, shift: Shift | None) -> str | None:
         """Return the attributes of a row at its new place, None for one that is deleted; new ones come before it."""
         found = _ROW.search(attributes)
         if found is None or shift is None:
@@ -395,7 +455,7 @@ class PartShift:
         wanted = self.areas.get(name, ()) if self.is_own else ()
         if name == "worksheetSource" and self.shift and f'sheet="{escape(self.sheet)}"' in attributes:
             wanted = ("ref",)
-        is_break = self.is_own and self.shift is not None and name == "brk" and self._is_in("rowBreaks")
+        is_break = self.is_own and isinstance(self.shift, RowShift) and name == "brk" and self._is_in("rowBreaks")
         is_gone = False
 
         def change(found: re.Match[str]) -> str:
@@ -496,12 +556,24 @@ class PartShift:
         return [escape(one, quote=False) for one in before], [escape(one, quote=False) for one in after]
 
 
+_ROWS = re.compile(r"(<((?:\w+:)?)sheetData(?:\s[^<>]*)?>)(.*)(</\2sheetData>)", re.DOTALL)
+_ONE_ROW = re.compile(r"<((?:\w+:)?)row(?=[\s/>])[^<>]*?(?:/>|>.*?</\1row>)\s*", re.DOTALL)
+
+
+def _sort_rows(text: str) -> str:
+    """Return the rows of a sheet by their numbers."""
+    rows = [(int(number[2]), found[0]) for found in _ONE_ROW.finditer(text) if (number := _ROW.search(found[0]))]
+    if sum(len(row) for _, row in rows) != len(text.lstrip()):
+        raise NotMovedError(fill("a tag cannot be found in it"))
+    return "".join(row for _, row in sorted(rows, key=lambda one: one[0]))
+
+
 _SHAPE = re.compile(r"<v:shape\b.*?</v:shape>", re.DOTALL)
 _SHAPE_ROW = re.compile(r"(<x:Row>\s*)([0-9]+)")
 _ANCHOR = re.compile(r"(<x:Anchor>)([^<]*)")
 
 
-def shift_shapes(data: bytes, move: RowShift) -> bytes:
+def shift_shapes(data: bytes, move: Shift) -> bytes:
     """Return the old drawing of a sheet, with the boxes of its comments, after a shift of rows."""
 
     def follow(found: re.Match[str]) -> str:
@@ -512,7 +584,7 @@ def shift_shapes(data: bytes, move: RowShift) -> bytes:
             if moved is None:
                 return ""
             shape = f"{shape[: row.start()]}{row[1]}{moved - 1}{shape[row.end() :]}"
-        return _ANCHOR.sub(anchor, shape)
+        return _ANCHOR.sub(anchor, shape) if isinstance(move, RowShift) else shape
 
     def anchor(found: re.Match[str]) -> str:
         numbers = found[2].split(",")
@@ -527,12 +599,14 @@ def shift_shapes(data: bytes, move: RowShift) -> bytes:
 _DRAWN_ROW = re.compile(r"(<(?:\w+:)?row>)([0-9]+)(?=</)")
 
 
-def shift_drawing(data: bytes, move: RowShift) -> bytes:
-    """Return a drawing whose pictures and charts stay at their cells after a shift of rows."""
+def shift_drawing(data: bytes, move: Shift) -> bytes:
+    """Return a drawing whose pictures and charts stay at their cells; where rows only change places, as they are."""
+    if isinstance(move, RowMove):
+        return data
     return _DRAWN_ROW.sub(lambda found: f"{found[1]}{_move_edge(int(found[2]), move)}", data.decode()).encode()
 
 
-def _move_edge(row: int, move: RowShift) -> int:
+def _move_edge(row: int, move: Shift) -> int:
     """Return where the row of an edge comes to lie, from 0; that of a deleted row goes to the next one."""
     moved = move.row(row + 1)
     return (move.at if moved is None else moved) - 1

@@ -272,6 +272,11 @@ ITEMS = Sheet(
     ),
 )  # fmt: skip
 
+GROUPS = (("Piece", "item"), ("Size", "breadth"), ("Fixing", "anchored"), ("Place", "x"), ("Details", "importance"))
+"""Groups of the columns of Items, each with its first column; further columns up to the next group belong to it."""
+WORKING_GROUP = "Working values"
+"""The group of the columns that Excel computes, but for the class."""
+
 PLACES_SHEET = Sheet(
     "Places", "table", False,
     "Rooms, doors, stairs and exits that routes lead between.",

@@ -41,7 +41,7 @@ from assess.workbook.patch import (
     write_edits,
 )
 from assess.workbook.plain_rows import column_letters, split_range
-from assess.workbook.row_shift import Growth, RowShift, move_areas
+from assess.workbook.row_shift import Growth, RowMove, RowShift, Shift, move_areas
 
 _TIMES = (datetime.datetime, datetime.date, datetime.time, datetime.timedelta)
 _FORMULA = fill("it holds a formula: change it in your spreadsheet program.")
@@ -73,7 +73,7 @@ class Worksheet:
     * `edited`: the columns of the cells that differ from these, by row.
     * `replaced`: those among them that replace a formula, whatever they hold.
     * `results`: stored results of formulas that are to be written.
-    * `shifts`: rows inserted and deleted since, in their order.
+    * `shifts`: rows inserted, deleted and moved since, in their order.
     """
 
     header_rows: ClassVar[int] = HEADER_ROWS
@@ -91,7 +91,7 @@ class Worksheet:
     edited: Mapping[int, frozenset[int]] = field(default_factory=dict, compare=False)
     replaced: frozenset[Place] = field(default=frozenset(), compare=False)
     results: Mapping[Place, Value] = field(default_factory=dict, compare=False)
-    shifts: tuple[RowShift, ...] = field(default=(), compare=False)
+    shifts: tuple[Shift, ...] = field(default=(), compare=False)
     kept: KeptRows = field(default_factory=KeptRows, compare=False)
     locks: Locks = field(default_factory=lambda: Locks(()), compare=False)
 
@@ -197,15 +197,17 @@ class Worksheet:
             marks = replace(marks, hollow=hollow)
         return replace(self, cells=self._with_rows(rows), marks=marks, results={**self.results, **results})
 
-    def shift(self, shift: RowShift) -> "Worksheet":
-        """Return the sheet with rows inserted or deleted; WorkbookError where that would tear something apart."""
+    def shift(self, shift: Shift) -> "Worksheet":
+        """Return the sheet with rows inserted, deleted or moved; WorkbookError where that would tear a thing apart."""
         self._check_shift(shift)
-        marks, like, new = self.marks, shift.like, range(shift.at, shift.at + shift.count)
+        count = shift.count if isinstance(shift, RowShift) else 0
+        marks, like, new = self.marks, shift.like, range(shift.at, shift.at + count)
         torn = Locks(marks.locked)
         copied = [at for row, at in marks.formulas if row == like and not torn.find(row, at)] if like else []
         cells = {moved: row for number, row in self.cells.items() if (moved := shift.row(number))}
-        if copied:
-            cells = dict(sorted({**cells, **{row: dict.fromkeys(sorted(copied), UNSAVED) for row in new}}.items()))
+        if copied or isinstance(shift, RowMove):
+            copies = {row: dict.fromkeys(sorted(copied), UNSAVED) for row in new} if copied else {}
+            cells = dict(sorted({**cells, **copies}.items()))
         formats = _move_keys(marks.formats, shift)
         formats |= {(row, at): code for (own, at), code in marks.formats.items() if own == like for row in new}
         row_formats = {moved: code for row, code in marks.row_formats.items() if (moved := shift.row(row))}
@@ -226,7 +228,7 @@ class Worksheet:
             cells=cells,
             marks=moved_marks,
             merged=tuple(merged),
-            hidden_rows=tuple(number for row in self.hidden_rows if (number := shift.row(row))),
+            hidden_rows=tuple(sorted(number for row in self.hidden_rows if (number := shift.row(row)))),
             tables=tuple(tables),
             edited={number: columns for row, columns in self.edited.items() if (number := shift.row(row))},
             replaced=frozenset(_move_places(self.replaced, shift)),
@@ -240,7 +242,10 @@ class Worksheet:
         covered = ((span, MERGED) for one in self.merged for span in _list_covered(one))
         return Locks([*self.marks.locked, *covered, *list_headings(self.tables)])
 
-    def _check_shift(self, shift: RowShift) -> None:
+    def _check_shift(self, shift: Shift) -> None:
+        if isinstance(shift, RowMove):
+            self._check_move(shift)
+            return
         first, last = shift.at, shift.at - shift.count - 1  # of those that are deleted
         why: Text | str = ""
         for (_, _, top, bottom), reason in self.marks.locked:
@@ -257,9 +262,26 @@ class Worksheet:
                 why = fill("a table keeps its headers, its totals and one row at least.")
         if shift.count > 0 and self.last_row + shift.count > SHEET_ROWS:
             why = fill("the sheet has no room for more rows.")
+        self._refuse_row(first, why)
+
+    def _check_move(self, move: RowMove) -> None:
+        """Refuse a move into or out of cells that belong together, and over headers and totals of tables."""
+        first, last = move.span
+        merged = ((area, MERGED) for one in self.merged if (area := split_range(one)))
+        for (_, _, top, bottom), why in (*self.marks.locked, *merged):
+            is_torn = top < bottom and top <= last and first <= bottom
+            if is_torn and not (first <= top and bottom <= last and move.row(bottom) - move.row(top) == bottom - top):
+                self._refuse_row(max(top, first), why)
+        for one in self.tables:
+            _, _, top, bottom = one.area
+            rows = range(top + one.headers, bottom - one.totals + 1)
+            if top <= last and first <= bottom and not (first in rows and last in rows):
+                self._refuse_row(first, fill("rows cannot be moved into or out of a table."))
+
+    def _refuse_row(self, row: int, why: Text | str) -> None:
         if why:
             fix = fill("Change this row in Excel.")
-            raise WorkbookError([Problem("error", self.title, self.address(first), why, fix)])
+            raise WorkbookError([Problem("error", self.title, self.address(row), why, fix)])
 
     def opened_row(self, row: int) -> int | None:
         """Return the number that a row had when it was opened; None for one that was inserted."""
@@ -292,9 +314,9 @@ class Worksheet:
     # ------------------------------------------------------------ what is to be written
 
     def list_edits(self) -> SheetEdits:
-        """Return what is to be written of it into the bytes that were opened."""
+        """Return what is to be written of it into the bytes that were opened, once its rows have been shifted there."""
         values = {(row, at): self.as_written(self.value((row, at))) for row, some in self.edited.items() for at in some}
-        return SheetEdits(values, self.results, self.shifts, self._find_growth())
+        return SheetEdits(values, self.results, growth=self._find_growth())
 
     def _find_growth(self) -> Growth:
         """Return the blocks of rows that were blank and that hold values now."""
@@ -314,11 +336,11 @@ def is_same(one: Any, other: Any) -> bool:
     return isinstance(one, bool) == isinstance(other, bool) and bool(one == other)
 
 
-def _move_places(places: Iterable[Place], shift: RowShift) -> set[Place]:
+def _move_places(places: Iterable[Place], shift: Shift) -> set[Place]:
     return {(moved, at) for row, at in places if (moved := shift.row(row))}
 
 
-def _move_keys(found: Mapping[Place, Any], shift: RowShift) -> dict[Place, Any]:
+def _move_keys(found: Mapping[Place, Any], shift: Shift) -> dict[Place, Any]:
     return {(moved, at): value for (row, at), value in found.items() if (moved := shift.row(row))}
 
 
@@ -350,6 +372,8 @@ class Workbook:
     problems: tuple[Problem, ...] = ()
     titles: tuple[str, ...] = ()
     """All its sheets by their own names."""
+    _shifted: bytes | None = field(default=None, compare=False)
+    """The bytes that were opened with the rows of all sheets shifted, None where none are."""
     _faults: dict[str, str] = field(default_factory=dict, compare=False)
     """Why a sheet cannot be changed at all, "" for one that can, once it was asked for."""
 
@@ -400,13 +424,31 @@ class Workbook:
     def insert_rows(self, sheet: str, at: int, count: int = 1, like: int = 0) -> "Workbook":
         """Return the workbook with rows inserted before row `at`, with the styles and formulas of the row `like`.
 
-        Raises WorkbookError where they would tear an array formula apart.
+        Raises WorkbookError where they would tear an array formula apart, or a reference cannot follow with certainty.
         """
-        return self._change({sheet: self.sheet(sheet).shift(RowShift(at, count, like))})
+        return self._shift(sheet, RowShift(at, count, like))
 
     def delete_rows(self, sheet: str, at: int, count: int = 1) -> "Workbook":
         """Return the workbook without some rows; WorkbookError where a table or an array formula needs them."""
-        return self._change({sheet: self.sheet(sheet).shift(RowShift(at, -count))})
+        return self._shift(sheet, RowShift(at, -count))
+
+    def move_rows(self, sheet: str, at: int, count: int, to: int) -> "Workbook":
+        """Return the workbook with rows moved to lie before row `to`, which is numbered as before.
+
+        Raises WorkbookError where that would tear a table, merged cells or an array formula apart.
+        """
+        return self._shift(sheet, RowMove(at, count, to))
+
+    def _shift(self, sheet: str, shift: Shift) -> "Workbook":
+        """Return it with rows shifted in memory and in its bytes: each shift is done once, however often it is saved.
+
+        So what cannot follow with certainty is refused at once.
+        """
+        one = self.sheet(sheet)
+        shifted = one.shift(shift)
+        with Book(self._shifted or self.data, self.name) as book:
+            data = write_edits(book, {one.title: SheetEdits(shifts=(shift,))})
+        return replace(self._change({sheet: shifted}), _shifted=data)
 
     def find_lock(self, sheet: str, place: Place) -> Text | str:
         """Return why a cell cannot be changed, "" where it can."""
@@ -443,7 +485,7 @@ class Workbook:
         edits = {one.title: one.list_edits() for one in self.sheets.values() if one.is_changed}
         if not edits:
             return self.data
-        with Book(self.data, self.name, progress) as book:
+        with Book(self._shifted or self.data, self.name, progress) as book:
             return write_edits(book, edits)
 
 

@@ -277,13 +277,13 @@ _PLAIN_SIGNS: dict[int, int | str] = {**_WIDE, **DASHES, **dict.fromkeys(map(ord
 _NUMBER = re.compile(
     r"(?P<sign>[-+]?) ?(?P<digits>\d[\d.,' ]*|[.,]\d+)(?P<power>[eE][-+]?\d{1,3})?(?P<unit>.*)", re.ASCII
 )
-_FEET = re.compile(
-    r"(?P<sign>[-+]?) ?(?:"
+_PARTS = re.compile(
+    r"(?P<sign>[-+]?) ?(?:(?P<metres>\d+) ?m ?(?P<cents>\d\d|\d(?= ?cm))(?: ?cm)?|"
     r"(?P<feet>\d+) ?(?:'|ft\.?|foot|feet)(?: ?-? ?(?P<inches>\d+(?:[.,]\d+)?) ?(?:\"|''|in\.?|inch|inches))?"
     r"|(?P<more_feet>\d+[.,]\d{1,2}) ?'|(?P<more_inches>\d+(?:[.,]\d{1,2})?) ?(?:\"|''))",
     re.ASCII | re.IGNORECASE,
 )
-"""Feet and inches, and either alone with its sign."""
+"""Metres and centimetres, as 1m80; feet and inches, and either alone with its sign."""
 _PRIMES = {ord("\u2032"): "'", **dict.fromkeys(map(ord, "\u2033\u201d\u201c"), '"')}
 _PLAIN = re.compile(r"\d+(?:[.,]\d*)?|[.,]\d+", re.ASCII)
 _GROUPED = re.compile(
@@ -413,7 +413,7 @@ def _take_number(column: Column, value: object, unit: str) -> tuple[object, Rema
         return 100 * value, replace(found, value=None)
     if not isinstance(value, str) or len(value) > LONGEST:
         return value, None
-    if (length := _read_feet(column, value, unit)) is not None:
+    if (length := _read_parts(column, value, unit)) is not None:
         typed = fill("{number:g}{unit}", number=length, unit=f" {unit}")
         return length, note("unit", _name_column(column, unit), shorten(value), typed, length)
     match = _NUMBER.fullmatch(straighten(value).removeprefix("'").lstrip())  # the sign by which programs enter a text
@@ -450,13 +450,13 @@ def is_converted(column: Column, value: object, unit: str) -> bool:
         return False
     match = _NUMBER.fullmatch(straighten(value).removeprefix("'").lstrip())
     factor = _find_factor(match["unit"].strip(), column, unit) if match else None
-    return factor not in (None, 1.0) or _read_feet(column, value, unit) is not None
+    return factor not in (None, 1.0) or _read_parts(column, value, unit) is not None
 
 
-def _read_feet(column: Column, value: str, unit: str) -> float | None:
+def _read_parts(column: Column, value: str, unit: str) -> float | None:
     if column.quantity != "length":
         return None
-    match = _FEET.fullmatch(straighten(value.translate(_PRIMES)))
+    match = _PARTS.fullmatch(straighten(value.translate(_PRIMES)))
     if match is None:
         return None
     feet, inches = (
@@ -465,7 +465,8 @@ def _read_feet(column: Column, value: str, unit: str) -> float | None:
     if match["inches"] and inches >= INCHES_OF_A_FOOT:  # 1'800" may be one number
         return None
     known = QUANTITIES["length"]
-    metres = (feet * known["ft"] + inches * known["in"]) * (-1 if match["sign"] == "-" else 1)
+    metric = int(match["metres"] or 0) + int(match["cents"] or 0) / 100
+    metres = (metric + feet * known["ft"] + inches * known["in"]) * (-1 if match["sign"] == "-" else 1)
     return float(f"{metres / known[unit]:.12g}")
 
 

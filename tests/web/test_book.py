@@ -133,7 +133,8 @@ def test_what_is_held_is_what_is_written(book, tmp_path):
 
 
 TYPED: dict[str, list[tuple[Any, Any]]] = {
-    "breadth": [("45 cm", 45), ("1,80 m", 180), ("45,5", 45.5), ("18 in", 45.72), ("1'4\"", 40.64),
+    "breadth": [("1m80", 180), ("=18*10", 180), ("= (1,5 + 2.25) / -0.5", -7.5), ("=0.1+0.2", 0.3),
+                ("45 cm", 45), ("1,80 m", 180), ("45,5", 45.5), ("18 in", 45.72), ("1'4\"", 40.64),
                 ("5 11/16", "5 11/16"), ("wide", "wide"), (True, True), (" ", None), ("", None)],
     "anchored": [("Y", "yes"), ("YES", "YES"), ("maybe", "maybe"), (True, "yes")], "axis": [("x", "x")],
     "item": [("  A  9 ", "A 9"), ("007", "007"), (7, 7)],
@@ -173,8 +174,11 @@ def test_cells_that_cannot_be_edited_formulas_in_place_of_values_and_what_is_no_
         ("Items", 2, "quantity"), ("Items", 2, "breadth"), ("Items", 3, "anchored"), ("Building", 0, "report_date"),
     ]  # fmt: skip
     places = [(sheet, *book.sheets[sheet].place(field, row)) for sheet, row, field in fields]
-    found = refusals(book, *((*place, " =1+40") for place in places), ("Items", 2, at("notes"), "=1+40"))
-    assert found == dict.fromkeys(places, "formulas are not computed here: type the value.")
+    found = refusals(book, *((*place, " =A1+40") for place in places), ("Items", 2, at("notes"), "=1+40"))
+    assert found == dict.fromkeys(places, "Formulas are not supported in this sheet. Enter the result instead.")
+    sums = ("=A1", "=2**3", "=1,800*2", "=18*", "=1/0", "=()", "=9//2", "=1e3", "=__import__('os')", "=18*10 cm", "=")
+    found = refusals(book, *(("Items", 2 + row, at("breadth"), text) for row, text in enumerate(sums)))
+    assert len(found) == len(sums)
     cells: list[Any] = [["Items", 2, 0], ["Items", "2", 0, 1], ["Items", 2.0, 0, 1], ["Items", True, 0, 1]]
     cells += [[None, 2, 0, 1], ["Items", 2, 0, [1]], ["Items", 2, 0, {"a": 1}], ["Items", 2, None, 1]]
     wrong: list[Any] = [None, {}, "x", [1], *([one] for one in cells)]

@@ -11,7 +11,7 @@ import xlsxwriter
 from assess.errors import WorkbookError
 from assess.workbook.plain_rows import column_letters, split_address
 from assess.workbook.read import open_workbook
-from assess.workbook.row_shift import Growth, RowShift, shift_formula, translate_formula
+from assess.workbook.row_shift import Growth, RowMove, RowShift, shift_formula, translate_formula
 from tests.recalculate import libreoffice, needs_libreoffice, stored_cells
 from tests.workbook.raw import SHEET
 from tests.workbook.test_patch import minimal
@@ -119,6 +119,32 @@ def test_everything_follows_rows_that_are_inserted_and_what_is_about_deleted_row
         "chart": ["Items!$C$2:$C$4"], "names": ["Items!$A$1:$D$4", "Items!$C$2:$C$4", "Items!$A$1:$D$4"],
     }  # fmt: skip
     assert b"<mergeCells" not in parts_of(data)[SHEET], "an empty list is no valid XML for Excel"
+
+
+def test_rows_that_are_moved_take_along_what_is_about_them_and_areas_that_hold_them_stay() -> None:
+    book = open_workbook(GRID, "book.xlsx")
+    data = book.move_rows("Items", 5, 2, 2).to_bytes()  # A4 and A5 before A1
+    assert _refs(data) == {
+        "formulas": [*(f"C{row}*2" for row in range(2, 7)), "SUM(Items!C2:C6)", "Items!C6"],
+        "areas": ["A1:D6", "F5:G6", "C2:C6", "B2:B6", "B6"], "extension": ["C2:C6", "Items!C2:C6"], "breaks": ["3"],
+        "comments": ["A5", "A2"], "boxes": ["4", "1"], "chart": ["Items!$C$2:$C$6"],
+        "names": ["Items!$A$1:$D$6", "Items!$C$2:$C$6", "Items!$A$1:$D$6"],
+    }  # fmt: skip
+    page = openpyxl.load_workbook(io.BytesIO(data))["Items"]
+    assert [page.cell(row, 1).value for row in range(1, 7)] == ["Item", "A4", "A5", "A1", "A2", "A3"]
+    again = open_workbook(data, "book.xlsx").move_rows("Items", 2, 2, 7)
+    assert _refs(again.to_bytes()) == _refs(GRID)
+    assert book.move_rows("Items", 2, 1, 7).sheet("Items").value((6, 0)) == "A1"
+    with pytest.raises(WorkbookError, match="merged"):
+        book.move_rows("Items", 4, 1, 2)
+    table = open_workbook((WORKBOOKS / "data" / "workbooks" / "table.xlsx").read_bytes(), "book.xlsx")
+    with pytest.raises(WorkbookError, match="into or out of a table"):
+        table.move_rows("Items", 2, 1, 40)
+    move = RowMove(5, 3, 2)
+    assert [move.row(row) for row in range(1, 10)] == [1, 5, 6, 7, 2, 3, 4, 8, 9]
+    assert all(one.back(one.row(row)) == row for one in (move, RowMove(2, 2, 9)) for row in range(1, 12))
+    text = "A5+A4+SUM(A6:A7)+SUM(A1:A9)+SUM(A1:A6)+SUM(A4:A9)"
+    assert shift_formula(text, "Items", True, move) == "A2+A7+SUM(A3:A4)+SUM(A1:A9)+SUM(A1:A7)+SUM(A7:A9)"
 
 
 def test_rows_that_are_filled_in_below_join_what_ends_above_them_and_a_table_keeps_its_totals() -> None:

@@ -111,7 +111,7 @@ SOME = [None, None, True, False, 7, -2.5, 1e15, 45000.25, 0.3, "", " x ", "45 cm
 
 
 def _edit(book: Workbook, draw: random.Random) -> Workbook:
-    """One random edit: some cells set, or rows inserted or deleted; the same workbook where it is refused."""
+    """One random edit: some cells set, or rows inserted, deleted or moved; the same workbook where it is refused."""
     name = draw.choice(
         [*book.sheets, *(one for one in book.titles if one not in {s.title for s in book.sheets.values()})]
     )
@@ -122,6 +122,10 @@ def _edit(book: Workbook, draw: random.Random) -> Workbook:
             return book.insert_rows(name, row, draw.randint(1, 3), like=draw.choice([0, max(row - 1, 1), row]))
         if kind < 0.3:
             return book.delete_rows(name, row, draw.randint(1, 3))
+        if kind < 0.45:
+            return book.move_rows(
+                name, row, count := draw.randint(1, 3), draw.choice([max(1, row - 2), row + count + 2])
+            )
         places = {(max(1, row + draw.randint(-2, 6)), draw.randint(0, 20)) for _ in range(draw.randint(1, 12))}
         free = [one for one in places if not book.find_lock(name, one) or draw.random() < 0.02]
         return book.set({name: {place: draw.choice(SOME) for place in free}})

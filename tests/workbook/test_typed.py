@@ -31,7 +31,7 @@ def meant(column: Column, value: object, unit: str | None = None) -> tuple[objec
 
 
 NUMBERS: dict[tuple[Column, str, str], dict[str, float]] = {
-    (HEIGHT, "cm", "unit"): {"45 cm": 45, "1.80 m": 180, "1,80m": 180, "450 mm": 45, "1'800 MM.": 180,
+    (HEIGHT, "cm", "unit"): {"1m80": 180, "1 m 80": 180, "1 m 5 cm": 105, "45 cm": 45, "1.80 m": 180, "1,80m": 180, "450 mm": 45, "1'800 MM.": 180,
         "1.8 metres": 180, "' 1.80 m": 180, "1'4\"": 40.64, "5 ft 11 in": 180.34},
     (HEIGHT, "in", "unit"): {"6 ft": 72, "5' 11\"": 71, "5\u2019 11\u201d": 71, "5\u2032-11\u2033": 71,
         "5' 1,5''": 61.5, "6'": 72, "5.5'": 66},
