@@ -220,7 +220,9 @@ class WhatIfView {
       if (asked !== this.#asked) return;
       this.#stamp = stamp;
       this.#take(answer);
-      if (["running", "waiting"].includes(answer.simulation.state)) this.#timer = setTimeout(() => this.#ask(), AGAIN_MS);
+      const isOpen = ["running", "waiting"].includes(answer.simulation.state);
+      if (isOpen) this.#timer = setTimeout(() => this.#ask(), AGAIN_MS);
+      this.results.node.setAttribute("aria-busy", String(isOpen));
     } catch (error) {
       if (error.name === "AbortError" || asked !== this.#asked) return;
       this.#fail(error.message);
@@ -241,7 +243,6 @@ class WhatIfView {
     this.#drawFirst();
     this.#drawPieces();
     this.results.draw(answer);
-    this.results.node.setAttribute("aria-busy", "false");
     this.write.disabled = answer.anchored.length === 0;
     this.status.textContent = this.results.summary(answer);
   }
