@@ -18,6 +18,7 @@ import hashlib
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -133,6 +134,7 @@ class DrawnBodies:
     restitution: FloatArray
 
 
+@lru_cache(maxsize=1 << 16)
 def name_number(name: str) -> int:
     """Return the number by which a piece of this name draws: the same wherever it stands."""
     return int.from_bytes(hashlib.sha256(name.encode()).digest()[:7], "big")

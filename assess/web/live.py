@@ -41,8 +41,9 @@ if TYPE_CHECKING:
 
 MOST_STATES = 4
 """States of which it is known what was sent of them: an older page is answered whole."""
-FEW, SOON = 60, 0.1
-"""So few cases that are still to be rocked are waited for, and how long [s]: an edit is answered with them."""
+FEW, SOON, MANY = 60, 0.1, 5000
+"""So few cases that are still to be rocked are waited for, and how long [s], of so many pieces at most: an edit is
+answered with them."""
 MOST_PROBLEMS = 1000
 """Problems in one answer; the rest are counted."""
 MOST_NAMED = 3
@@ -103,7 +104,8 @@ class LiveView:
         """Return the answer of `GET /api/live`: the rows that changed since a stamp, all where that is not known."""
         snapshot = book.snapshot()
         with suppress(AssessError):
-            wait_for_simulation(snapshot, seconds=SOON, most=FEW)
+            if len(snapshot.inventory.items) <= MANY:
+                wait_for_simulation(snapshot, seconds=SOON, most=FEW)
         with self._lock:
             if book is not self._book:
                 self._book, self._states = book, OrderedDict()

@@ -5,6 +5,7 @@ output, as frames, the first of which is the order. The process saves and ends o
 the server has ended, however it did.
 """
 
+import gc
 import json
 import logging
 import os
@@ -44,6 +45,8 @@ LOWER_PRIORITY = 2
 THREADS = 3
 """Requests that are worked out at once."""
 LOG = logging.getLogger("assess.web")
+COLLECTED = 200_000, 50, 100
+"""After how many objects the memory is searched for circles: a search of a large workbook takes a tenth of a second."""
 OWN = "/own/"
 """Beginning of what the server asks for itself; no request of a user has such an address."""
 
@@ -168,6 +171,7 @@ def main() -> None:
     """Answer what comes by the input until it ends."""
     output, lock = os.fdopen(os.dup(sys.stdout.fileno()), "wb"), threading.Lock()
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # whatever is printed goes to the standard error
+    gc.set_threshold(*COLLECTED)
     if hasattr(os, "nice"):
         os.nice(LOWER_PRIORITY)
     first = read_frame(sys.stdin.buffer)

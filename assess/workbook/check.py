@@ -224,19 +224,22 @@ def check_items(tables: Tables) -> Iterator[Problem]:
     types = types_by_name(tables["Catalogue"])
     lacking: dict[str, list[Row]] = {}
     is_listed = tables["Catalogue"].found
+    kept, faulty = table.kept("check")
     for row in table.rows:
+        kind = types.get(key(row.get("type") or ""))
+        before = kept.get(row.number)
+        if before and before[0] is row and before[1] == (kind, is_listed) and row.number not in faulty:
+            yield from before[2]
+            continue
         sizes = filled_sizes(table, row, types)
-        for name in ("breadth", "height"):
-            if name in sizes or table.spoilt(name, row):
-                continue
-            if name not in table.places:
-                lacking.setdefault(name, []).append(row)  # reported once for the column, not in every row
-            elif not table.spoilt("type", row) and (is_listed or row.get("type") is None):
-                values = {"label": table.label(name), "type": table.label("type")}
-                message = fill("{label} is blank and no {type} gives it.", **values)
-                yield table.habit(name, row, message, fill("Fill it in, or choose a {type} that has one.", **values))
-        yield from _check_sizes(table, row, sizes, types.get(key(row.get("type") or "")))
-        yield from _check_item(table, row, sizes)
+        blank = [name for name in ("breadth", "height") if name not in sizes and not table.spoilt(name, row)]
+        for name in (one for one in blank if one not in table.places):
+            lacking.setdefault(name, []).append(row)  # reported once for the column, not in every row
+        found = [*_check_blank(table, row, [one for one in blank if one in table.places], is_listed=is_listed)]
+        found += [*_check_sizes(table, row, sizes, kind), *_check_item(table, row, sizes)]
+        if row.number not in faulty and not lacking:
+            kept[row.number] = row, (kind, is_listed), found
+        yield from found
     for name, rows in lacking.items():
         message = nfill(
             "the column {header} is missing, and row {row} has no Type that gives it.",
@@ -244,6 +247,16 @@ def check_items(tables: Tables) -> Iterator[Problem]:
             len(rows), header=table.sheet.column(name).header(), row=str(rows[0].number),
         )  # fmt: skip
         yield table.problem_at_top(message, fill("Add the column, or give those rows such a Type."))
+
+
+def _check_blank(table: Table, row: Row, names: Iterable[str], *, is_listed: bool) -> Iterator[Problem]:
+    """Report sizes that are blank and that no type gives, unless the type has been reported."""
+    if table.spoilt("type", row) or not (is_listed or row.get("type") is None):
+        return
+    for name in names:
+        values = {"label": table.label(name), "type": table.label("type")}
+        message = fill("{label} is blank and no {type} gives it.", **values)
+        yield table.habit(name, row, message, fill("Fill it in, or choose a {type} that has one.", **values))
 
 
 def _check_item(table: Table, row: Row, sizes: dict[str, float]) -> Iterator[Problem]:

@@ -171,6 +171,15 @@ class Table:
         wanted = {*names}
         return [row for row in self.rows if wanted <= row.values.keys()]
 
+    def kept(self, purpose: str) -> tuple[dict[int, tuple[Any, Any, Any]], frozenset[int]]:
+        """Return what an earlier reading made of rows for a purpose, by their number, and the rows that have errors.
+
+        It may be taken where the row is the very same, what else it rests on is equal, and the row has no error.
+        """
+        held = None if self.source is None else self.source.kept
+        found = {} if held is None or self.blind else held.made.setdefault(purpose, {})
+        return found, frozenset(number for cell in self.failed for number in row_numbers(cell))
+
     def with_failed(self, problems: Sequence[Problem]) -> "Table":
         """Return the table with the cells of errors noted."""
         cells = {one.cell for one in problems if one.severity == "error" and one.sheet == self.sheet.name}

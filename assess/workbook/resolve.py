@@ -128,7 +128,12 @@ def build_floors(
 def build_items(table: Table, types: Mapping[str, CatalogueType]) -> tuple[Item, ...]:
     """Return the items that have all they need; why others have not has been reported."""
     items = []
+    kept, faulty = table.kept("items")
     for row in table.rows:
+        kind, before = types.get(key(row.get("type") or "")), kept.get(row.number)
+        if before and before[0] is row and before[1] == kind and row.number not in faulty:
+            items.append(before[2])
+            continue
         typed = _find_in_type(table, row, types, FROM_TYPE)
         values, assumed = {**row.values, **typed}, [*typed]
         if "axis" not in values and (axis := turned_axis(row)):
@@ -137,7 +142,10 @@ def build_items(table: Table, types: Mapping[str, CatalogueType]) -> tuple[Item,
         assumed += [name for name in ("quantity", "anchored") if name not in values]
         if values.keys() >= {"item", "floor", "breadth", "height"}:
             more = {name: values.pop(name) for name in [*values] if name not in _ITEM_FIELDS}
-            items.append(Item(row=row.number, **values, assumed=tuple(assumed), extra=row.extra, more=more))
+            item = Item(row=row.number, **values, assumed=tuple(assumed), extra=row.extra, more=more)
+            items.append(item)
+            if row.number not in faulty:
+                kept[row.number] = row, kind, item
     return tuple(items)
 
 

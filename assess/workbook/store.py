@@ -55,11 +55,13 @@ class KeptRows:
 
     headers: object = None
     rows: dict[int, tuple[Cells, Any, Sequence[Any], Sequence[Any]]] = field(default_factory=dict)
+    made: dict[str, dict[int, tuple[Any, Any, Any]]] = field(default_factory=dict)
+    """What was made of rows without an error, by what for and their number: the row, on what else it rests, and it."""
 
     def serve(self, headers: object) -> None:
         """Forget all rows unless they were parsed by equal headers."""
         if self.headers != headers:
-            self.headers, self.rows = headers, {}
+            self.headers, self.rows, self.made = headers, {}, {}
 
 
 @dataclass(frozen=True, slots=True)
