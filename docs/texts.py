@@ -108,6 +108,7 @@ def _of_the_workbook() -> Iterator[tuple[str, str]]:
     from assess.workbook.catalogue import catalogue_texts
     from assess.workbook.example import example_texts, room_texts
     from assess.workbook.schema import HELP, LISTS
+    from assess.workbook.worked_example import worked_texts
 
     texts = (
         template.TITLE,
@@ -129,6 +130,7 @@ def _of_the_workbook() -> Iterator[tuple[str, str]]:
     yield from ((text, "assess/workbook/live_row.py") for text in hints)
     yield from ((text, "assess/workbook/example.py") for text in example_texts())
     yield from ((text, "assess/workbook/rooms.csv") for text in room_texts())
+    yield from ((text, "inventories/market-street.xlsx") for text in worked_texts())
     yield from ((text, "assess/workbook/catalogue.csv") for text in catalogue_texts())
 
 

@@ -51,6 +51,8 @@ LONGER = 1.4
 """Median T1 over that of the code [-]: assumed. 575 Market Street has 2.5, Alhambra 1.5, Berkeley 0.9 to 1.1."""
 STOREY = 3.0
 """Height of a storey [m], where only their number is known: assumed."""
+HIGH_STOREY = 3.3
+"""Height of a storey by which a new floor is placed [m]: assumed, above `STOREY`, so that it rather lies too high."""
 SCATTER, GIVEN_SCATTER = 0.35, 0.10
 """Standard deviation of ln T1 by height, and where T1 is given, which changes with amplitude [-]: assumed."""
 SHORTEST, LONGEST = 0.15, 3.0
@@ -217,3 +219,23 @@ def assume_elevation(name: str, height: float | None, storeys: int | None, lowes
     if storey is None or height is None or storeys is None:
         return None
     return min(max(storey - lowest, 0) * height / storeys, height)
+
+
+def guess_elevation(
+    name: str, floors: Iterable[tuple[str, float | None]], height: float | None, storeys: int | None
+) -> float | None:
+    """Return the elevation [m] of a floor by its number, from those of other floors, else by storeys; None if none.
+
+    Between and beyond floors of known elevation it goes straight on from the two nearest; it is at most `height`.
+    """
+    number = None if is_below_ground(name) else find_number(name)
+    if number is None:
+        return None
+    known = {at: z for one, z in floors if z is not None and (at := find_number(one)) is not None}
+    near = sorted(known, key=lambda at: (abs(at - number), at))[:2]
+    step = height / storeys if height and storeys else HIGH_STOREY
+    if len(near) == 2:
+        step = (known[near[1]] - known[near[0]]) / (near[1] - near[0])
+    first = near[0] if near else 0
+    found = known.get(first, 0.0) + (number - first) * step
+    return round(found if height is None else min(found, height), 3)

@@ -37,7 +37,7 @@ from assess.web.request_errors import (
     describe_fault,
 )
 from assess.web.sessions import Session
-from assess.web.starting import choose, choose_shaking, describe_start
+from assess.web.starting import choose, choose_shaking, describe_map, describe_start
 from assess.web.texts import choose_language, describe_texts
 
 if TYPE_CHECKING:
@@ -291,7 +291,7 @@ TABLE: tuple[tuple[str, Mapping[str, Handler]], ...] = (
             asked.job.read_file(asked.query["name"]), "application/octet-stream", asked.query["name"]
         ),
         MODELS: _describe_import,
-        "/api/start": lambda asked: describe_start(asked.session.home),
+        "/api/start": lambda asked: describe_start(asked.session.home), "/api/map": lambda _asked: describe_map(),
         "/api/texts": lambda asked: describe_texts(asked.query.get("language") or asked.language),
     }),
     ("POST", {

@@ -3,13 +3,13 @@
 A fix is what its button says and the edits that it makes, as `POST /api/edit` takes them, in the units of the headers.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from assess.errors import Problem
 from assess.i18n import Text, fill, gettext
-from assess.motion.assumed import find_number, is_below_ground
+from assess.motion.assumed import find_number, guess_elevation, is_below_ground
 from assess.units import QUANTITIES, ROUNDING
 from assess.web.columns import PageColumn, PageSheet
 from assess.workbook.habits import SHOWN
@@ -22,33 +22,11 @@ from assess.workbook.values import find_near_choice, is_within, list_readings
 if TYPE_CHECKING:
     from assess.web.snapshot import Snapshot
 
-STOREY = 3.3
-"""Height of a storey where nothing tells it [m]: assumed."""
 DIGITS = 4
 """Significant digits of a number that a fix writes."""
 Edit = tuple[str, int, int, Any]
 """Sheet, row, column and value."""
 Fix = tuple[Text, tuple[Edit, ...]]
-Level = tuple[str, float | None]
-"""The name of a floor, and its elevation [m]."""
-
-
-def guess_elevation(name: str, floors: Iterable[Level], height: float | None, storeys: int | None) -> float | None:
-    """Return the elevation [m] of a floor by its number, from those of other floors, else of a storey; None if none.
-
-    Between and beyond floors of known elevation it goes straight on from the two nearest; it is at most `height`.
-    """
-    number = None if is_below_ground(name) else find_number(name)
-    if number is None:
-        return None
-    known = {at: z for one, z in floors if z is not None and (at := find_number(one)) is not None}
-    near = sorted(known, key=lambda at: (abs(at - number), at))[:2]
-    step = height / storeys if height and storeys else STOREY
-    if len(near) == 2:
-        step = (known[near[1]] - known[near[0]]) / (near[1] - near[0])
-    first = near[0] if near else 0
-    found = known.get(first, 0.0) + (number - first) * step
-    return round(found if height is None else min(found, height), 3)
 
 
 class Fixes:

@@ -1,5 +1,6 @@
 """A request that is not carried out: its status, a message, how to fix it, and the problems of a workbook."""
 
+import re
 from typing import Any
 
 from assess.errors import AssessError, CancelledError, InputError, OutputError, Problem, WorkbookError
@@ -8,6 +9,7 @@ from assess.i18n import Text, fill, gettext
 BAD_REQUEST, NO_SESSION, FORBIDDEN, NOT_FOUND, WRONG_METHOD = 400, 401, 403, 404, 405
 TIMEOUT, CONFLICT, TOO_LARGE, WRONG_HOST, UNUSABLE, TOO_MANY = 408, 409, 413, 421, 422, 429
 BROKEN, UNAVAILABLE = 500, 503
+_FIRST = re.compile(r"\{(\w+)")
 MOST = 200
 """Problems in one answer."""
 
@@ -41,9 +43,11 @@ def _say(message: str, fix: str = "") -> dict[str, Any]:
 
 
 def say_sentence(text: str) -> str:
-    """Return a text in the language in use, with a capital: elsewhere messages follow a place and a colon."""
-    said = gettext(text)
-    return f"{said[:1].upper()}{said[1:]}"
+    """Return a text in the language in use, with a capital unless a name begins it: elsewhere it follows a place."""
+    said, first = gettext(text), text
+    while isinstance(first, Text) and (found := _FIRST.match(first.template)):
+        first = first.values.get(found[1], "")
+    return f"{said[:1].upper()}{said[1:]}" if isinstance(first, Text) else said
 
 
 def describe_problem(problem: Problem) -> dict[str, Any]:

@@ -1,6 +1,8 @@
 """The elevation that is assumed of a floor from its name."""
 
-from assess.motion.assumed import assume_elevation, find_lowest_number, find_storey
+import pytest
+
+from assess.motion.assumed import assume_elevation, find_lowest_number, find_storey, guess_elevation
 
 NAMES = {
     "0": 0, "G": 0, "Ground floor": 0, " pt ": 0, "Piano terra": 0, "B1": 0, "b 2": 0, "-2": 0, "Basement": 0,
@@ -29,3 +31,18 @@ def test_the_ground_floor_begins_the_numbers():
     for lowest, floors in cases:
         assert find_lowest_number(floors.items()) == lowest, floors
     assert [assume_elevation(str(one), 12.0, 4, lowest=1) for one in range(6)] == [0, 0, 3, 6, 9, 12]
+
+
+@pytest.mark.parametrize(
+    ("name", "floors", "height", "storeys", "expected"),
+    [
+        ("3", [], None, None, 9.9), ("3", [], 16, 4, 12), ("9", [], 16, 4, 16), ("Roof", [], 16, 4, None),
+        ("-1", [], 16, 4, None), ("3rd floor", [("1", 0.0)], None, None, 6.6),
+        ("2", [("1", 0.0), ("4", 12.0)], 9, 2, 4),
+        ("5", [("1", 0.0), ("3", 6.0), ("4", 10.0), ("Roof", 20.0)], None, None, 14), ("0", [("2", None)], 9, 3, 0),
+    ],
+)  # fmt: skip
+def test_the_elevation_that_is_offered_goes_on_from_other_floors_else_by_storeys(
+    name, floors, height, storeys, expected
+):
+    assert guess_elevation(name, floors, height, storeys) == expected

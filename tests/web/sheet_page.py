@@ -7,7 +7,7 @@ from playwright.sync_api import expect
 
 from tests.waiting import PATIENCE
 
-CLASS = "Class (formula)"
+CLASS = "Class"
 KEY = re.compile(r"<[A-Z][A-Za-z0-9+]*>")
 
 SCROLL_TO = """async (head) => {

@@ -1,9 +1,6 @@
 """The fixes of problems that one click makes: made as the page makes them, after which the problem is gone."""
 
-import pytest
-
 from assess.i18n import load_catalogue, speaking
-from assess.web.fixes import guess_elevation
 from assess.web.live import LiveView
 from assess.workbook.template import Content, write_workbook
 from tests.web.opened import hold
@@ -75,18 +72,3 @@ def test_in_italian_and_in_feet_the_words_and_numbers_are_those_of_the_workbook(
         "Usa Terra",
         "Aggiungi Armadio 20 × 70 in a Catalogo",
     ]
-
-
-@pytest.mark.parametrize(
-    ("name", "floors", "height", "storeys", "expected"),
-    [
-        ("3", [], None, None, 9.9), ("3", [], 16, 4, 12), ("9", [], 16, 4, 16), ("Roof", [], 16, 4, None),
-        ("-1", [], 16, 4, None), ("3rd floor", [("1", 0.0)], None, None, 6.6),
-        ("2", [("1", 0.0), ("4", 12.0)], 9, 2, 4),
-        ("5", [("1", 0.0), ("3", 6.0), ("4", 10.0), ("Roof", 20.0)], None, None, 14), ("0", [("2", None)], 9, 3, 0),
-    ],
-)  # fmt: skip
-def test_the_elevation_that_is_offered_goes_on_from_other_floors_else_by_storeys(
-    name, floors, height, storeys, expected
-):
-    assert guess_elevation(name, floors, height, storeys) == expected

@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 from assess.web.limits import MOST_MODEL
 from tests.bim import scan_files
 from tests.waiting import wait_until
-from tests.web.looking import examine
+from tests.web.looking import examine, open_menu
 from tests.web.model_reader import hold_reader, is_gone, linux, write_house
 from tests.web.opened import write_office
 from tests.web.sheet_page import CLASS, SheetPage
@@ -29,7 +29,7 @@ def house(tmp_path_factory):
 
 def _choose(page, *files):
     with page.expect_file_chooser() as chooser:
-        page.get_by_role("button", name="Choose a model").press("Enter")
+        page.get_by_role("button", name="Open a file").press("Enter")
     chooser.value.set_files(*files)
 
 
@@ -63,7 +63,7 @@ def test_a_dropped_model_shows_what_was_taken_and_becomes_a_workbook(page, serve
     expect(found.get_by_role("heading", name="scan.xlsx")).to_be_visible()
     expect(SheetPage(found, server).cell(CLASS, 2)).to_contain_text(re.compile("low|medium|high"))
     assert (server.folder / "scan.xlsx").is_file()
-    found.get_by_role("link", name="Imported").click()
+    open_menu(found).get_by_role("link", name="Imported").click()
     _see_list(found, "scan.json")
     found.get_by_role("link", name="Back to scan.xlsx").click()
     expect(found.locator("#view-sheet")).to_be_visible()
@@ -81,7 +81,7 @@ def test_the_list_of_what_was_skipped_is_copied_and_none_of_it_becomes_a_formula
     assert lines[0].split("\t") == ["Reason", "Type", "Number"]
     assert [line.split("\t")[1:] for line in lines[1:]] == [["IfcFurniture Shelf", "1"]]
     found.get_by_role("button", name="Discard").click()
-    expect(found.get_by_role("heading", name="Start from a building model")).to_be_visible()
+    expect(found.get_by_role("button", name="Open a file")).to_be_visible()
     rows = [["Not on the floor", name, 3] for name in FORMULAS]
     text = found.evaluate("async (rows) => (await import('/clipboard.mjs')).writeList(rows)", rows)
     cells = [line.split("\t") for line in text.split("\n")]
@@ -100,7 +100,7 @@ def test_a_model_that_cannot_be_read_is_told_and_a_second_try_works(page, served
     fault = found.locator(".import-card [role=alert]")
     expect(fault).to_contain_text("cut.ifc")
     expect(fault).to_contain_text("END-ISO-10303-21")
-    expect(found.get_by_role("button", name="Choose a model")).to_be_focused()
+    expect(found.get_by_role("button", name="Open a file")).to_be_focused()
     assert examine(found) == []
     huge = tmp_path / "huge.ifc"
     with huge.open("wb") as file:
@@ -126,7 +126,7 @@ def test_a_reading_is_shown_and_cancelled_by_a_button_or_by_leaving(page, served
     assert examine(found) == []
     found.keyboard.press("Enter")
     expect(card.locator(".fault")).to_have_text("Reading duplex.ifc was cancelled. Nothing of it was kept.")
-    expect(found.get_by_role("button", name="Choose a model")).to_be_focused()
+    expect(found.get_by_role("button", name="Open a file")).to_be_focused()
     _choose(found, DUPLEX)  # a page that is left ends its reading
     reader = hold_reader(server)
     expect(found.locator(".import-card").get_by_role("status")).to_have_text("Reading duplex.ifc")

@@ -1,15 +1,21 @@
 """New workbooks made from the page, and the texts that it asks for."""
 
 import re
+from pathlib import Path
 
 import pytest
 
 import assess
 from assess.web import texts
+from assess.web.book import Book
 from assess.web.file_names import make_safe
+from assess.web.live import LiveView
+from assess.web.request_errors import RequestError
+from assess.web.starting import build_workbook
+from tests.conftest import EXAMPLE
 
 ASKED = {
-    "kind": "template", "name": "ufficio", "use": "Office", "building": "Sede", "town": "Avellino", "language": "it",
+    "kind": "template", "name": "ufficio", "use": "Office", "building": "Sede", "address": "Avellino", "language": "it",
     "shaking": "MMI VIII, severe", "floor": "1", "room": "Archivio", "units": "imperial",
     "pieces": [{"type": "Bookcase 5 shelves", "count": 2}],
 }  # fmt: skip
@@ -34,12 +40,79 @@ def test_a_template_has_classes_at_once(served):
     assert {one.room for one in inventory.items} == {"Archivio"}
     assert (inventory.building.address, inventory.building.use) == ("Avellino", "Office")
     assert inventory.language == "it"
-    server.client.post("/api/start", {**ASKED, "name": "third", "floor": "3", "language": "en"})
+    server.client.post("/api/start", {**ASKED, "name": "attic", "floor": "Attic", "language": "en"})
     live = server.client.get("/api/live").json()  # the height of the floor is not known
     assert (live["error"], len(live["items"]["class"])) == ("", 2)
     assert set(live["items"]["class"]) <= {"low", "medium", "high", "very_high"}
-    (floor,) = assess.read_inventory(server.folder / "third.xlsx").floors
-    assert floor.elevation is None
+    assert [one.elevation for one in assess.read_inventory(server.folder / "attic.xlsx").floors] == [0, None]
+
+
+@pytest.mark.parametrize(
+    ("asked", "floors", "on"),
+    [
+        ({"floor": "3rd floor"}, {"0": 0, "1": 3.3, "2": 6.6, "3": 9.9}, "3"),
+        ({"floor": "2", "storeys": "4", "height": "16 m"}, {"0": 0, "1": 4, "2": 8, "3": 12}, "2"),
+        ({"floor": "1° piano", "storeys": "2"}, {"0": 0, "1": 3.3}, "1"),
+        ({"floor": "Ground floor", "storeys": "3", "height": "36", "units": "imperial"},
+         {"0": 0, "1": 3.6576, "2": 7.3152}, "0"),
+        ({"floor": "B1", "storeys": "2", "height": "7"}, {"0": 0, "1": 3.5, "B1": None}, "B1"),
+        ({"floor": "5", "storeys": "3", "height": "9"}, {"0": 0, "1": 3, "2": 6, "3": 9, "4": 9, "5": 9}, "5"),
+    ],
+)  # fmt: skip
+def test_floors_are_made_from_storeys_and_height_and_the_first_piece_has_a_class(asked, floors, on):
+    request = {"use": "Hospital", "shaking": "MMI VIII, severe", "pieces": [{"type": "Medicine cabinet", "count": 1}]}
+    book = Book.hold("w.xlsx", build_workbook({**request, **asked}).data, Path())
+    inventory = book.snapshot().inventory
+    assert {one.floor: one.elevation for one in inventory.floors} == pytest.approx(floors, abs=0.01)
+    assert [one.floor for one in inventory.items] == [on]
+    assert LiveView().answer(book, None)["items"]["class"] != [""]
+    is_assumed = [one.name == "elevation assumed" for one in inventory.floors]
+    assert any(is_assumed) == ("height" not in asked)
+    assert inventory.building.height == (
+        {"16 m": 16, "36": pytest.approx(10.9728), "7": 7, "9": 9}.get(asked.get("height"))
+    )
+
+
+def test_what_is_typed_of_the_building_is_read_as_its_cells_are_and_refused_with_the_reason():
+    typed = {"address": "Via Roma 1", "latitude": "43.7", "longitude": "-122.2", "storeys": "4", "structure": "walls",
+             "ground_pga": "25 %g", "ground_pgv": "0,3 m/s", "records": ["a b#1;2.smc", "../c.smc"]}  # fmt: skip
+    book = Book.hold("w.xlsx", build_workbook({"use": "Office", **typed}).data, Path())
+    building = book.snapshot().inventory.building
+    assert (building.address, building.latitude, building.longitude, building.storeys, building.structure) == (
+        "Via Roma 1", 43.7, -122.2, 4, "walls",
+    )  # fmt: skip
+    assert (building.ground_pga, building.ground_pgv) == pytest.approx((0.25 * 9.80665, 0.3))
+    assert {one["name"] for one in book.describe()["missing"]} == {"a b-1-2.smc", "c.smc"}
+    for field, text, why in (
+        ("height", "1", "Height is 1 m, expected 2 to 1000 m"), ("storeys", "2.5", "expected a whole number"),
+        ("latitude", "99", "expected -90 to 90"), ("structure", "straw", "expected one of"),
+        ("ground_pga", "lots", "expected a number"),
+    ):  # fmt: skip
+        with pytest.raises(RequestError, match=why) as refused:
+            build_workbook({"use": "Office", field: text})
+        assert (refused.value.status, refused.value.more) == (422, {"field": field})
+    with pytest.raises(RequestError, match="at most 2 files"):
+        build_workbook({"use": "Office", "records": ["a", "b", "c"]})
+
+
+def test_the_example_is_made_in_the_language_of_the_page(example_inventory):
+    made = build_workbook({"kind": "example", "language": "it"})
+    assert build_workbook({"kind": "example"}).data == EXAMPLE.read_bytes()
+    folder = EXAMPLE.parent
+    book = Book.hold(made.name, made.data, folder)
+    found = book.snapshot().inventory
+    assert (found.language, set(made.files)) == (
+        "it",
+        {one.file for floor in found.floors for axis in floor.records.values() for one in axis},
+    )
+    same = ("item", "floor", "breadth", "height", "axis", "anchored", "x", "y", "importance")
+    known, translated = (
+        [[getattr(one, name) for name in same] for one in of.items] for of in (example_inventory, found)
+    )
+    assert translated == known
+    assert {one.room for one in found.items} >= {"Sala riunioni", "Ufficio sud"}
+    assert {one.place for one in found.places} >= {"42 Ufficio nord", "G cortile"}
+    assert "error" not in [one["severity"] for one in LiveView().answer(book, None)["problems"]]
 
 
 @pytest.mark.slow

@@ -12,12 +12,9 @@ const OLD = /\.(xls|ods|numbers|csv)$/i;
 
 const MODEL = /\.(ifc|ifczip|ifcxml|json|sh3d)$/i;
 
-/** Have the browser's dialog choose a workbook, and open it. */
-export const chooseWorkbook = (store) => choose(".xlsx,.xlsm", (file) => openWorkbook(store, file));
-
-/** Have the browser's dialog choose a building model, and read it. */
-export const chooseModel = (store) =>
-  choose(".ifc,.xlsx,.xlsm,.json,.sh3d", (file) => (WORKBOOK.test(file.name) ? openWorkbook(store, file) : readModel(store, file)));
+/** Have the browser's dialog choose a workbook or a building model, and open or read it. */
+export const chooseFile = (store) =>
+  choose(".xlsx,.xlsm,.ifc,.json,.sh3d", (file) => (WORKBOOK.test(file.name) ? openWorkbook(store, file) : readModel(store, file)));
 
 function choose(accept, take) {
   const input = el("input", { type: "file", accept });

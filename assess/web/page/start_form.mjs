@@ -1,183 +1,254 @@
-// A new workbook in three short steps, each of which can be skipped: the building, the shaking, the first room.
+// A new building on one screen: what it is, how it shakes, what stands in its first room. Most may stay blank.
 
-import { choose, clear, el, labelled } from "./elements.mjs";
-import { language, languages, number, t } from "./texts.mjs";
+import { get } from "./api.mjs";
+import { el } from "./elements.mjs";
+import { icon } from "./icons.mjs";
+import { language, languages, number, t, tn } from "./texts.mjs";
+import { html, nothing, render, svg } from "./vendor/lit-html.mjs";
 
 const SUFFIX = ".xlsx";
 const MOST_COUNT = 200;
+const MOST_RECORDS = 2;
 const INCH = 0.0254;
+const FOOT = 0.3048;
 const MANY = 3;
+const PEAKS = "peaks";
+const RECORD = "record";
+const POINT = /^\s*([-+]?\d{1,3}(?:[.,]\d+)?)\s*°?\s*([NS]?)\s*[,;\s]\s*([-+]?\d{1,3}(?:[.,]\d+)?)\s*°?\s*([EWO]?)\s*$/i;
+const TYPED = ["building", "address", "storeys", "height", "structure", "floor", "room"];
 
 export class StartForm {
-  node = el("form", { class: "steps", noValidate: true });
+  node = el("form", { class: "new", noValidate: true });
   #offers;
   #begin;
-  #step = 0;
+  #leave;
+  #values = { building: "", address: "", coordinates: "", storeys: "", height: "", structure: "", shaking: "", ground_pga: "", ground_pgv: "", floor: "0", room: "", units: "si", name: "" };
+  #records = [];
   #pieces = [];
-  #isNamed = false;
-  #fields = {};
-  #steps = [];
+  #map = null;
+  #said = "";
 
   /**
    * @param {object} offers the answer of GET /api/start
-   * @param {(request: object) => void} begin has the workbook made
+   * @param {(request: object, records: File[]) => void} begin has the workbook made
+   * @param {() => void} leave goes back to the choices
    */
-  constructor(offers, begin) {
-    this.#offers = { uses: [], shakings: [], languages: languages(), rooms: {}, types: {}, ...offers };
+  constructor(offers, begin, leave) {
+    this.#offers = { languages: languages(), ...offers };
     this.#begin = begin;
-    this.#makeFields();
-    this.#steps = [this.#buildingStep(), this.#shakingStep(), this.#roomStep()];
-    this.error = el("p", { class: "error-text", role: "alert" });
-    this.node.addEventListener("submit", (event) => (event.preventDefault(), this.#forward()));
-    this.#followUse();
-    this.#draw();
-  }
-
-  get language() {
-    return this.#fields.language.value;
-  }
-
-  /** Say what is wrong, or that nothing is. */
-  complain(text) {
-    this.error.textContent = text;
-  }
-
-  #makeFields() {
-    const f = this.#fields;
+    this.#leave = leave;
     const known = this.#offers.languages.some(([code]) => code === language());
-    const text = (props) => el("input", { type: "text", autocomplete: "off", ...props });
-    f.use = choose(this.#offers.uses, undefined, { on: { change: () => this.#followUse() } });
-    f.building = text({ maxLength: 100, on: { input: () => this.#followName() } });
-    f.town = text({ maxLength: 100 });
-    f.shaking = choose([["", t("I do not know yet")], ...this.#offers.shakings.filter(([key]) => key)], "");
-    f.floor = text({ value: "1", maxLength: 40, size: 8 });
-    f.rooms = el("datalist", { id: "rooms-of-use" });
-    f.room = text({ maxLength: 60, list: "rooms-of-use" });
-    f.pieces = el("ul", { class: "pieces" });
-    f.name = text({ maxLength: 80, required: true, on: { input: () => (this.#isNamed = true) } });
-    f.language = choose(this.#offers.languages, known ? language() : undefined);
-    f.units = choose([["si", t("centimetres, kilograms")], ["imperial", t("inches, pounds")]], "si");
-    f.units.addEventListener("change", () => this.#pieces.forEach((piece) => piece.showSize()));
+    Object.assign(this.#values, { use: offers.uses[0][0], language: known ? language() : this.#offers.languages[0][0] });
+    this.node.addEventListener("submit", (event) => (event.preventDefault(), this.#send("template")));
+    this.#followUse();
   }
 
-  #buildingStep() {
-    const f = this.#fields;
-    return [t("1. The building"), [
-      el("div", { class: "fields" },
-        labelled(t("Use"), f.use, t("The list of furniture is made for it.")), labelled(t("Name of the building"), f.building),
-        labelled(t("Street and town"), f.town))]];
-  }
-
-  #shakingStep() {
-    const help = t("How strong the ground shakes where the building stands. It is a start: Floors and Building take recorded motions and values of a code.");
-    return [t("2. How it shakes"), [el("div", { class: "fields" }, labelled(t("Shaking of the ground"), this.#fields.shaking, help))]];
-  }
-
-  #roomStep() {
-    const f = this.#fields;
-    const add = el("button", { type: "button", text: t("Add another type"), on: { click: () => this.#addPiece() } });
-    const pieces = el("fieldset", null, el("legend", { text: t("What stands in it") }), f.pieces, el("div", { class: "buttons" }, add));
-    return [t("3. The first room"), [
-      el("div", { class: "fields" }, labelled(t("Floor"), f.floor), labelled(t("Room"), f.room), f.rooms), pieces,
-      el("div", { class: "fields" }, labelled(t("Language of the workbook"), f.language), labelled(t("Units"), f.units))]];
+  /** Say what is wrong, and show the field. */
+  complain(text, field = "") {
+    this.#said = text;
+    this.#draw();
+    this.node.querySelector(`[name="${field === "latitude" || field === "longitude" ? "coordinates" : field}"]`)?.focus();
   }
 
   #draw() {
-    const [title, parts] = this.#steps[this.#step];
-    const isLast = this.#step === this.#steps.length - 1;
-    const button = (label, run, more) => el("button", { type: "button", text: label, on: { click: run }, ...more });
-    const { name } = this.#fields;
-    clear(this.node).append(
-      el("ol", { class: "step-list", "aria-label": t("Steps") }, this.#steps.map(([label], at) => this.#stepLink(label, at))),
-      el("fieldset", { class: "step" }, el("legend", { text: title, tabIndex: -1 }), ...parts),
-      labelled(t("Name of the file"), name), this.error,
-      el("div", { class: "buttons" },
-        el("button", { type: "submit", class: "primary", text: isLast ? t("Make the workbook") : t("Next") }),
-        this.#step > 0 && button(t("Back"), () => this.#go(this.#step - 1)),
-        !isLast && button(t("Skip the rest and make it"), () => this.#send("template")),
-        button(t("Blank workbook"), () => this.#send("blank"), { title: t("With every type of furniture, and no example") })));
+    const { shaking } = this.#values;
+    const { can_save: canSave, folder } = this.#offers;
+    const place = canSave
+      ? t("It is made in the folder {folder}, in which assess open was started, and every change is saved in it.", { folder })
+      : t("It is kept while this page is in use: download it when you are done.");
+    render(html`
+      <h2>${t("New building")}</h2>
+      <p class="muted">${t("Only the name of the file is needed; the rest can be filled in later.")}</p>
+      <div class="columns">
+        <fieldset><legend>${t("The building")}</legend>${this.#building()}</fieldset>
+        <div class="rest"><fieldset><legend>${t("How it shakes")}</legend>
+          ${this.#choice("shaking", t("Shaking of the ground"), this.#shakings(), t("How strong the ground shakes where the building stands."))}
+          ${shaking === PEAKS ? html`<div class="fields">${this.#number("ground_pga", t("Ground PGA"))}${this.#number("ground_pgv", t("Ground PGV"))}</div>` : nothing}
+          ${shaking === RECORD ? this.#recordField() : nothing}
+        </fieldset>
+        <fieldset><legend>${t("The first pieces")}</legend>${this.#room()}</fieldset>
+        <fieldset><legend>${t("The workbook")}</legend>
+          ${this.#text("name", t("Name of the file"), this.#name)}
+          <div class="fields">${this.#choice("language", t("Language of the workbook"), this.#offers.languages)}
+            ${this.#choice("units", t("Units"), [["si", t("centimetres, kilograms")], ["imperial", t("inches, pounds")]])}</div>
+          <p class="hint">${place}</p>
+        </fieldset></div>
+      </div>
+      <p class="error-text fault" role="alert">${this.#said}</p>
+      <div class="buttons">
+        <button type="submit" class="primary">${t("Make the workbook")}</button>
+        <button type="button" @click=${this.#leave}>${t("Back")}</button>
+        <button type="button" title=${t("With every type of furniture, and no example")} @click=${() => this.#send("blank")}>${t("Blank workbook")}</button>
+      </div>`, this.node);
   }
 
-  #stepLink(label, at) {
-    const current = at === this.#step ? "step" : null;
-    return el("li", null, el("button", { type: "button", class: "quiet", "aria-current": current, text: label, on: { click: () => this.#go(at) } }));
+  #building() {
+    const { storeys, height } = this.#values;
+    const [, , unit] = this.#range("height");
+    const each = this.#offers.storey / (unit === "ft" ? FOOT : 1);
+    const assumed = storeys.trim() && !height.trim() && !this.#fault("storeys")
+      ? t("Blank: {height} {unit} is assumed, {each} {unit} a storey.", { height: number(each * Number(storeys), 3), each: number(each, 3), unit }) : "";
+    return html`
+      <div class="fields">${this.#choice("use", t("Use"), this.#offers.uses)}${this.#text("building", t("Name of the building"))}</div>
+      ${this.#text("address", t("Street and town"))}
+      <div class="fields">${this.#number("storeys", t("Storeys"))}${this.#number("height", t("Height"), assumed)}
+        ${this.#choice("structure", t("Structure"), [["", t("I do not know")], ...this.#offers.structures.filter(([key]) => key !== "unknown")])}</div>
+      ${this.#text("coordinates", t("Coordinates"), this.#values.coordinates, t("Latitude and longitude, such as 37.87, -122.27."))}
+      ${this.#mapField()}`;
   }
 
-  #go(step) {
-    this.#step = step;
-    this.#draw();
-    this.node.querySelector("legend").focus();
+  #shakings() {
+    return [["", t("I do not know yet")], ...this.#offers.shakings, [PEAKS, t("I know PGA and PGV")], [RECORD, t("I have a record of the nearest station")]];
   }
 
-  #forward() {
-    if (this.#step < this.#steps.length - 1) this.#go(this.#step + 1);
-    else this.#send("template");
+  #recordField() {
+    const take = (event) => ((this.#records = [...event.target.files].slice(0, MOST_RECORDS)), this.#draw());
+    return html`<div class="field"><label class="field-name" for="new-records">${t("Record of the nearest station")}</label>
+      <input type="file" id="new-records" name="records" multiple aria-describedby="new-records-help" @change=${take}><span class="hint" id="new-records-help">${t("One or two horizontal components, in any format that assess reads. They become Record X and Record Y of floor 0, whose motion serves the floors above.")}</span></div>`;
   }
 
-  /** Types and rooms are those of the use; pieces that it does not have go. */
+  #room() {
+    const { use } = this.#values;
+    const types = this.#offers.types[use] ?? [];
+    return html`
+      <div class="fields">${this.#text("floor", t("Floor"), this.#values.floor, this.#aboutFloor())}${this.#text("room", t("Room"), this.#values.room, "", "rooms-of-use")}</div>
+      <datalist id="rooms-of-use">${(this.#offers.rooms[use] ?? []).map((room) => html`<option value=${room}></option>`)}</datalist>
+      <ul class="pieces">${this.#pieces.map((piece, at) => html`<li>
+        <input type="number" min="1" max=${MOST_COUNT} .value=${piece.count} aria-label=${t("How many")} @input=${(event) => (piece.count = event.target.value)}>
+        <span aria-hidden="true">×</span>
+        <select aria-label=${t("Type of furniture")} @change=${(event) => ((piece.type = event.target.value), this.#draw())}>
+          ${types.map(({ type }) => html`<option value=${type} .selected=${type === piece.type}>${type}</option>`)}</select>
+        <button type="button" class="quiet square" aria-label=${t("Remove this type")} title=${t("Remove this type")} @click=${() => (this.#pieces.splice(at, 1), this.#draw())}>${icon("close")}</button>
+        <span class="hint">${describeSize(types.find((one) => one.type === piece.type), this.#values.units)}</span></li>`)}</ul>
+      <div class="buttons"><button type="button" @click=${() => (this.#addPiece(), this.#draw())}>${icon("plus")} ${t("Add another type")}</button></div>`;
+  }
+
+  // ---- the map that comes along: a click sets the coordinates
+
+  #mapField() {
+    const load = async (event) => {
+      if (event.target.open && !this.#map) this.#map = await get("/api/map").catch(() => null);
+      this.#draw();
+    };
+    return html`<details @toggle=${load}><summary>${t("On the map of San Francisco Bay")}</summary>${this.#map ? this.#drawMap() : nothing}</details>`;
+  }
+
+  #drawMap() {
+    const [west, south, east, north] = this.#map.edges;
+    const across = Math.cos(((south + north) / 2) * (Math.PI / 180));
+    const place = ([x, y]) => `${((x - west) * across).toFixed(4)} ${(north - y).toFixed(4)}`;
+    const point = readPoint(this.#values.coordinates);
+    const pick = (event) => {
+      const box = event.currentTarget.getBoundingClientRect();
+      const at = [north - ((event.clientY - box.top) / box.height) * (north - south), west + ((event.clientX - box.left) / box.width) * (east - west)];
+      this.#set("coordinates", at.map((one) => one.toFixed(4)).join(", "));
+    };
+    return html`<svg class="map" role="img" aria-label=${t("Map of San Francisco Bay")} viewBox="0 0 ${(east - west) * across} ${north - south}" @click=${pick}>
+      <path d=${this.#map.land.map((ring) => `M${ring.map(place).join("L")}Z`).join("")}></path>
+      ${point ? svg`<circle cx=${(point[1] - west) * across} cy=${north - point[0]} r="0.03"></circle>` : nothing}</svg>
+      <p class="hint">${t("A click sets the coordinates.")}</p>`;
+  }
+
+  // ---- fields, and what is wrong with what is typed
+
+  #set(name, value) {
+    this.#values[name] = value;
+    if (name === "use") this.#followUse();
+    else this.#draw();
+  }
+
+  #text(name, label, value = this.#values[name], help = "", list = nothing) {
+    const fault = this.#fault(name);
+    return html`<div class="field"><label class="field-name" for="new-${name}">${label}</label>
+      <input type="text" id="new-${name}" name=${name} autocomplete="off" maxlength="200" list=${list} .value=${value} aria-invalid=${fault ? "true" : nothing} aria-describedby="new-${name}-help" @input=${(event) => this.#set(name, event.target.value)}>
+      <span class=${fault ? "hint error-text" : "hint"} id="new-${name}-help" aria-live="polite">${fault || help}</span></div>`;
+  }
+
+  #number(name, label, help = "") {
+    const unit = this.#range(name)[2];
+    return this.#text(name, unit ? `${label} [${unit}]` : label, this.#values[name], help);
+  }
+
+  #choice(name, label, options, help = "") {
+    return html`<label class="field"><span class="field-name">${label}</span><select name=${name} @change=${(event) => this.#set(name, event.target.value)}>
+      ${options.map(([key, text]) => html`<option value=${key} .selected=${key === this.#values[name]}>${text}</option>`)}</select>${help ? html`<span class="hint">${help}</span>` : nothing}</label>`;
+  }
+
+  #range(name) {
+    return this.#offers.ranges[this.#values.units][name];
+  }
+
+  #fault(name) {
+    const text = (this.#values[name] ?? "").trim();
+    if (name === "coordinates") return !text || readPoint(text) ? "" : t("Type latitude and longitude, such as 37.87, -122.27.");
+    const range = this.#range(name);
+    if (!range || !text) return "";
+    const [low, high, unit] = range;
+    const value = Number(text.replace(",", "."));
+    if (Number.isNaN(value) && name !== "storeys" && /^[-+]?[\d.,]+ *\D+$/.test(text)) return ""; // with its unit, which the server reads
+    if (value >= low && value <= high && (name !== "storeys" || Number.isInteger(value))) return "";
+    if (name === "storeys") return t("Type a whole number from {low} to {high}.", { low, high });
+    return t("Type a number from {low} to {high} {unit}.", { low: number(low), high: number(high), unit });
+  }
+
+  #aboutFloor() {
+    const { floor, storeys } = this.#values;
+    const n = this.#fault("storeys") ? 0 : Number(storeys);
+    const top = n - 1;
+    if (n && Number(/\d+/.exec(floor)?.[0] ?? 0) > top) return tn("The building has {n} storey: its only floor is 0.", "The building has {n} storeys: its floors are 0 to {top}.", n, { top });
+    return t("0 is the ground floor.");
+  }
+
+  /** Rooms and types are those of the use; pieces that it does not have go. */
   #followUse() {
-    const f = this.#fields;
-    const rooms = this.#offers.rooms[f.use.value] ?? [];
-    clear(f.rooms).append(...rooms.map((room) => el("option", { value: room })));
-    f.room.value = rooms[0] ?? "";
+    this.#values.room = this.#offers.rooms[this.#values.use]?.[0] ?? "";
     this.#pieces = [];
-    clear(f.pieces);
     this.#addPiece();
-    this.#followName();
+    this.#draw();
   }
 
   #addPiece() {
-    const types = this.#offers.types[this.#fields.use.value] ?? [];
-    if (!types.length) return;
-    const next = types[Math.min((this.#pieces.length + 1) * MANY, types.length - 1)].type;
-    const piece = {
-      type: choose(types.map((one) => [one.type, one.label ?? one.type]), next, { "aria-label": t("Type of furniture") }),
-      count: el("input", { type: "number", min: 1, max: MOST_COUNT, value: "1", "aria-label": t("How many") }),
-      size: el("span", { class: "hint" }),
-    };
-    const showSize = () => (piece.size.textContent = describeSize(types.find((one) => one.type === piece.type.value), this.#fields.units.value));
-    piece.showSize = showSize;
-    piece.type.addEventListener("change", showSize);
-    showSize();
-    const line = el("li", null, piece.count, el("span", { "aria-hidden": "true", text: "×" }), piece.type, piece.size, this.#removal(() => {
-      this.#pieces.splice(this.#pieces.indexOf(piece), 1);
-      line.remove();
-    }));
-    this.#pieces.push(piece);
-    this.#fields.pieces.append(line);
-  }
-
-  #removal(run) {
-    return el("button", { type: "button", "aria-label": t("Remove this type"), title: t("Remove this type"), text: t("Remove"), on: { click: run } });
+    const types = this.#offers.types[this.#values.use] ?? [];
+    if (types.length) this.#pieces.push({ count: "1", type: types[Math.min((this.#pieces.length + 1) * MANY, types.length - 1)].type });
   }
 
   /** The name of the file follows the building until somebody types another. */
-  #followName() {
-    if (this.#isNamed) return;
-    const { building, use, name } = this.#fields;
-    const label = building.value.trim() || use.selectedOptions[0]?.textContent || t("building");
+  get #name() {
+    const { building, use, name } = this.#values;
+    if (name) return name;
+    const label = building.trim() || this.#offers.uses.find(([key]) => key === use)[1];
     const plain = label.normalize("NFKD").replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-+|-+$/g, "").toLowerCase();
-    name.value = (plain || t("building")) + SUFFIX;
+    return (plain || t("building")) + SUFFIX;
   }
 
   #send(kind) {
-    const f = this.#fields;
-    const name = f.name.value.trim();
-    if (!name) {
-      this.complain(t("Give the file a name."));
-      f.name.focus();
-      return;
-    }
-    const isWhole = kind === "template" && this.#step === this.#steps.length - 1;
-    const pieces = isWhole ? this.#pieces.map((one) => ({ type: one.type.value, count: countOf(one.count) })) : [];
-    this.#begin({
-      kind, name: /\.xlsx$/i.test(name) ? name : name + SUFFIX, use: f.use.value, building: f.building.value.trim(), town: f.town.value.trim(),
-      shaking: f.shaking.value, language: f.language.value, units: f.units.value, floor: f.floor.value.trim(), room: f.room.value.trim(), pieces,
-    });
+    const v = this.#values;
+    const wrong = ["coordinates", "storeys", "height", ...(v.shaking === PEAKS ? ["ground_pga", "ground_pgv"] : [])].find((one) => this.#fault(one));
+    if (wrong) return this.complain(this.#fault(wrong), wrong);
+    const [latitude, longitude] = readPoint(v.coordinates) ?? ["", ""];
+    const peaks = v.shaking === PEAKS ? { ground_pga: v.ground_pga, ground_pgv: v.ground_pgv } : {};
+    const records = v.shaking === RECORD ? this.#records : [];
+    const pieces = this.#pieces.map((one) => ({ type: one.type, count: Math.min(MOST_COUNT, Math.max(1, Math.round(Number(one.count) || 1))) }));
+    const typed = Object.fromEntries(TYPED.map((one) => [one, v[one].trim()]));
+    const name = this.#name.trim();
+    this.#said = "";
+    this.#draw();
+    return this.#begin({
+      ...typed, ...peaks, kind, name: /\.xlsx$/i.test(name) ? name : name + SUFFIX, use: v.use, language: v.language, units: v.units,
+      latitude: String(latitude), longitude: String(longitude), shaking: [PEAKS, RECORD].includes(v.shaking) ? "" : v.shaking, records: records.map((one) => one.name), pieces,
+    }, records);
   }
 }
 
-const countOf = (field) => Math.min(MOST_COUNT, Math.max(1, Math.round(Number(field.value) || 1)));
+/** Latitude and longitude as they are typed, null where they cannot be read: 37.87, -122.27; 43,7° N 11,2° E. */
+function readPoint(text) {
+  const found = POINT.exec(text);
+  if (!found) return null;
+  const [, y, ns, x, ew] = found;
+  const [latitude, longitude] = [y, x].map((one) => Number(one.replace(",", ".")));
+  const point = [/s/i.test(ns) ? -latitude : latitude, /[wo]/i.test(ew) ? -longitude : longitude];
+  return Math.abs(point[0]) <= 90 && Math.abs(point[1]) <= 180 ? point : null;
+}
 
 /** Breadth, width and height as the catalogue has them. */
 function describeSize(type, units) {

@@ -1,12 +1,14 @@
-// The empty state: a workbook that there is, a building model, the worked example, or a new one in three short steps.
+// The empty state: a new building, or a file to open; the worked example as a link.
 
-import { get, post } from "./api.mjs";
-import { clear, el } from "./elements.mjs";
+import { get, post, send } from "./api.mjs";
+import { el } from "./elements.mjs";
+import { icon } from "./icons.mjs";
 import { ImportCard } from "./import_card.mjs";
 import { notice } from "./messages.mjs";
-import { canLeave, chooseModel, chooseWorkbook } from "./open_file.mjs";
+import { canLeave, chooseFile } from "./open_file.mjs";
 import { StartForm } from "./start_form.mjs";
-import { t } from "./texts.mjs";
+import { language, t } from "./texts.mjs";
+import { html, nothing, render } from "./vendor/lit-html.mjs";
 
 const EXAMPLE = "market-street.xlsx";
 const MOST_EXAMPLES = 20;
@@ -15,62 +17,77 @@ const CONFLICT = 409;
 class StartView {
   #root;
   #store;
+  #offers = null;
+  #fault = "";
+  #form = null;
   #isBusy = false;
 
   constructor(root, store) {
-    this.#root = root;
+    this.#root = root.appendChild(el("div", { class: "page-like start" }));
     this.#store = store;
-    this.card = new ImportCard(() => chooseModel(store));
+    this.card = new ImportCard(() => chooseFile(store));
   }
 
   async show() {
+    this.#form = null;
     try {
-      this.#draw(await get("/api/start"));
+      this.#offers = await get("/api/start");
+      this.#fault = "";
     } catch (error) {
-      clear(this.#root).append(el("div", { class: "page-like" }, el("p", { role: "alert", text: error.message || t("The server does not answer.") })));
+      this.#fault = error.message || t("The server does not answer.");
     }
+    this.#draw();
   }
 
   hide() {}
 
-  #draw(offers) {
-    this.form = new StartForm(offers, (request) => this.#begin(request));
-    const back = el("p", null, el("a", { href: "#sheet", text: t("Back to {name}", { name: this.#store.book?.name ?? "" }) }));
-    clear(this.#root).append(el("div", { class: "page-like start" },
-      el("h2", { text: t("Which furniture overturns in an earthquake, and what to fix first") }),
-      el("p", { class: "muted", text: t("You list the furniture of a building in an Excel workbook, as a sheet and on a plan. Risk classes show while you type.") }),
-      this.#store.book && back,
-      el("div", { class: "ways" }, this.#openCard(), this.card.node, this.#exampleCard(offers)),
-      el("section", { class: "card" }, el("h3", { text: t("Make a new workbook") }), place(offers), this.form.node),
-      el("p", { class: "hint", text: t("Nothing leaves this machine, unless the page was opened at the address of another one.") })));
+  #draw() {
+    const parts = this.#fault ? html`<p role="alert">${this.#fault}</p>` : this.#form ? this.#form.node : this.#choices();
+    render(parts, this.#root);
   }
 
-  #openCard() {
-    const open = el("button", { type: "button", text: t("Choose a workbook…"), on: { click: () => chooseWorkbook(this.#store) } });
-    return el("section", { class: "card" }, el("h3", { text: t("Open a workbook") }),
-      el("div", { class: "drop" }, el("p", { text: t("Drop an Excel workbook (.xlsx) anywhere on this page.") }), open));
+  #choices() {
+    const { book } = this.#store;
+    const { can_save: canSave, folder } = this.#offers;
+    const example = (event) => (event.preventDefault(), this.#begin({ kind: "example", name: EXAMPLE, language: language() }));
+    return html`
+      <h2>${t("Which furniture overturns in an earthquake, and what to fix first")}</h2>
+      ${book ? html`<p><a href="#sheet">${t("Back to {name}", { name: book.name })}</a></p>` : nothing}
+      <div class="ways">
+        <section class="choice">
+          <button type="button" class="new-building" @click=${() => this.#showForm(true)}>
+            ${icon("plus")}<strong>${t("New building")}</strong><span class="muted">${t("A workbook with the floors of your building and its first pieces. Risk classes show while you type.")}</span>
+          </button>
+        </section>
+        ${this.card.node}
+      </div>
+      <p class="example"><a href="#example" @click=${example}>${t("Open the worked example")}</a>
+        <span class="hint">${t("An office tower in San Francisco with the motions recorded on its floors in 1989. Its furniture is made up. You may change everything.")}
+          ${canSave ? t("It is made as {name} in the folder {folder}.", { name: EXAMPLE, folder }) : nothing}</span></p>
+      <p class="hint">${t("Nothing leaves this machine, unless the page was opened at the address of another one.")}</p>`;
   }
 
-  #exampleCard(offers) {
-    const begin = () => this.#begin({ kind: "example", name: EXAMPLE, language: this.form.language });
-    return el("section", { class: "card" }, el("h3", { text: t("Look at an example") }),
-      el("p", { text: t("An office tower in San Francisco with the motions recorded on its floors in 1989. Its furniture is made up. You may change everything.") }),
-      el("div", { class: "buttons" }, el("button", { type: "button", text: t("Open the worked example"), on: { click: begin } })),
-      offers.can_save && el("p", { class: "hint", text: t("It is made as {name} in the folder {folder}.", { name: EXAMPLE, folder: offers.folder }) }));
+  #showForm(isShown) {
+    this.#form = isShown ? new StartForm(this.#offers, (request, records) => this.#begin(request, records), () => this.#showForm(false)) : null;
+    this.#draw();
+    this.#root.querySelector(isShown ? "select" : ".new-building").focus();
   }
 
-  /** Have the server make the workbook, and show its first piece. */
-  async #begin(request) {
+  /** Have the server make the workbook, send the records that it names, and show its first piece. */
+  async #begin(request, records = []) {
     if (this.#isBusy || !(await canLeave(this.#store, request.name))) return;
     this.#isBusy = true;
-    this.form.complain("");
     try {
-      this.#store.replaceBook(await this.#make(request));
+      const book = await this.#make(request);
+      this.#store.replaceBook(book);
       location.hash = "#sheet";
+      const named = request.records ?? [];
+      const missing = (book.missing ?? []).filter((one) => one.kind === "record");
+      for (const [at, { name }] of named.length ? missing.entries() : []) this.#store.replaceBook(await send(`/api/file?name=${encodeURIComponent(name)}`, records[at]));
     } catch (error) {
-      const why = [error.message || t("The server does not answer."), ...(error.body?.problems ?? []).map((one) => one.message)];
-      if (request.kind === "example") notice(why.join("\n"), { kind: "error" });
-      else this.form.complain(why.join("\n"));
+      const why = [error.message || t("The server does not answer."), ...(error.body?.problems ?? []).map((one) => one.message)].join("\n");
+      if (this.#form && location.hash !== "#sheet") this.#form.complain(why, error.body?.field);
+      else notice(why, { kind: "error" });
     } finally {
       this.#isBusy = false;
     }
@@ -88,14 +105,6 @@ class StartView {
     }
     return post("/api/start", request);
   }
-}
-
-/** Where the new file will be. */
-function place(offers) {
-  const text = offers.can_save
-    ? t("It is made in the folder {folder}, in which assess open was started, and every change is saved in it.", { folder: offers.folder })
-    : t("It is kept while this page is in use: download it when you are done.");
-  return el("p", { class: "muted", text });
 }
 
 export const createView = (root, store) => new StartView(root, store);
