@@ -100,6 +100,14 @@ class PlanPage:
         self.settle()
         return self.sheet.values(sheet, field)
 
+    def outline(self, row):
+        """Return the corners of a place as the workbook on the server has them."""
+        return [[float(one) for one in corner.split()] for corner in self.values("Places", "outline")[row].split("; ")]
+
+    def scale(self):
+        """Return the pixels of a metre."""
+        return self.page.evaluate("() => document.querySelector('svg.plan .world').getScreenCTM().a")
+
     def shown_at(self, row):
         """Return where a piece is drawn [m]."""
         found = re.match(r"translate\(([-\d.]+) ([-\d.]+)\)", self.piece(row).get_attribute("transform"))

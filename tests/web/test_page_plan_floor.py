@@ -63,10 +63,15 @@ def test_a_picture_is_placed_by_two_clicks_and_a_distance(page, served_here, tmp
         form.get_by_label("it runs").select_option(run)
         form.get_by_role("button", name="Place the picture").click()
         expect(plan.panel).to_contain_text("Placed: 13.00 m wide")
+        plan.settle()
+        box = plan.page.locator("svg.plan").bounding_box()
+        for u, v in ((0, 0), (1, 0.5)):
+            x, y = on_picture(plan, u, v)
+            assert 0 <= x - box["x"] <= box["width"], "the placed picture is seen whole"
+            assert 0 <= y - box["y"] <= box["height"]
         left, bottom, width, turned = numbers(plan)
         assert None not in (left, bottom)
         assert (width, turned) == (pytest.approx(13, abs=0.05), pytest.approx(turn, abs=0.3))
-        plan.page.get_by_role("button", name="Show all").click()
         ends = on_picture(plan, 0.1, 0.1), on_picture(plan, 0.6, 0.1)
         assert ends[0] == pytest.approx(plan.place(1, 1.5), abs=1.5)
         plan.tool("measure")
@@ -80,9 +85,18 @@ def test_a_picture_is_placed_by_two_clicks_and_a_distance(page, served_here, tmp
         assert numbers(plan) == [None] * 4
 
 
-def test_an_unlocked_picture_is_dragged_and_added_from_the_page(plan, tmp_path):
+def test_a_picture_is_added_to_the_floor_that_is_shown_and_dragged_when_unlocked(plan, tmp_path):
     draw_picture(tmp_path / "new.png")
     plan.tab("picture")
+    plan.page.get_by_role("button", name="First").click()
+    plan.page.locator("input[type=file]").last.set_input_files(tmp_path / "new.png")
+    expect(plan.panel).to_contain_text("Not placed yet")
+    expect(plan.page.get_by_role("button", name="First")).to_have_attribute("aria-pressed", "true")
+    assert plan.values("Floors", "plan") == {3: "new.png"}
+    plan.page.locator("nav.tabs [data-tab=sheet]").click()
+    plan.open()
+    expect(plan.page.get_by_role("button", name="First")).to_have_attribute("aria-pressed", "true")
+    plan.page.get_by_role("button", name="Ground").click()
     plan.page.locator("input[type=file]").last.set_input_files(tmp_path / "new.png")
     expect(plan.panel).to_contain_text("Not placed yet")
     plan.panel.get_by_label("Unlocked").check()
@@ -95,26 +109,30 @@ def test_an_unlocked_picture_is_dragged_and_added_from_the_page(plan, tmp_path):
     assert numbers(plan) == [left, bottom, width, turn]
 
 
-def test_rooms_doors_and_a_segment_are_drawn_and_its_state_follows(empty):
+def test_rooms_doors_and_a_way_are_drawn_and_its_state_follows(empty):
     plan = empty
     expect(plan.page.locator(".plan-empty")).to_contain_text("Nothing is on this floor yet")
-    plan.tool("place")
+    plan.tool("room")
     for corner in ((1, 1), (6, 1), (6, 5), (1, 5)):
         plan.click(*corner)
     plan.keyboard.press("Enter")
     room = plan.values("Places", "place")[2]
-    outline = [[float(one) for one in corner.split()] for corner in plan.values("Places", "outline")[2].split("; ")]
+    outline = plan.outline(2)
     assert [one for corner in outline for one in corner] == pytest.approx([1, 1, 6, 1, 6, 5, 1, 5], abs=0.06)
     assert outline[0][1] == outline[1][1], "nearly level sides are level"
     assert plan.values("Places", "kind")[2] == "room"
     assert (plan.values("Places", "x")[2], plan.values("Places", "y")[2]) == pytest.approx((3.5, 3), abs=0.1)
-    plan.tool("place")
-    plan.page.get_by_label("Kind of place").select_option("exit")
-    plan.click(6, 3.5)
+    plan.keyboard.press("e")
+    plan.page.get_by_label("Width of the door or exit").fill("1,1")
+    near = 15 / plan.scale()
+    plan.click(6 - near, 3.5)
     assert plan.values("Places", "kind")[3] == "exit"
-    assert plan.values("Places", "x")[3] == outline[1][0], "it snaps to the wall"
-    plan.tool("segment")
-    plan.page.get_by_label("Route of new segments").fill("Way out")
+    assert plan.values("Places", "x")[3] == outline[1][0], "it goes to the wall"
+    left, right = (plan.page.locator(".opening .gap").bounding_box()[side] for side in ("y", "height"))
+    assert right == pytest.approx(1.1 * plan.scale(), abs=6), left
+    expect(plan.panel.get_by_label("Width")).to_have_value("1.1")
+    plan.tool("way")
+    plan.page.get_by_label("Route of new ways").fill("Way out")
     plan.click(3.5, 3.2)
     plan.click(6, 3.5)
     assert plan.values("Routes", "route") == {2: "Way out"}
@@ -122,12 +140,50 @@ def test_rooms_doors_and_a_segment_are_drawn_and_its_state_follows(empty):
         room,
         plan.values("Places", "place")[3],
     )
+    assert plan.values("Routes", "clear_width") == {2: 1.1}, "the way is as wide as the exit"
     plan.keys("Escape", "Escape")
     expect(plan.page.locator("[data-tool=select]")).to_have_attribute("aria-pressed", "true")
     expect(plan.page.locator(".band")).to_have_class(re.compile("state-not-known"))  # no furniture is listed
-    for _ in range(3):
+    plan.click(6, 3.5)
+    plan.panel.get_by_label("Width").fill("0.8")
+    plan.keyboard.press("Enter")
+    assert plan.values("Routes", "clear_width") == {2: 0.8}
+    expect(plan.panel).to_contain_text("Narrower than Required width")
+    plan.page.locator("svg.plan").focus()
+    for _ in range(4):
         plan.keys("Control+z").settle()
     assert plan.values("Places", "place") == {}
+
+
+def test_a_corridor_is_dragged_named_while_it_is_typed_and_a_draft_leaves_the_old_selection_alone(plan):
+    plan.click(6.5, 1)
+    expect(plan.panel.locator(".details h2")).to_have_text("Hall")
+    plan.tool("corridor")
+    expect(plan.panel.locator(".details h2")).to_have_text("Corridor")
+    expect(plan.panel.locator("input:visible")).to_have_count(0)
+    plan.click(9, 1)
+    expect(plan.panel.locator("input:visible")).to_have_count(0)
+    plan.keyboard.press("Escape")
+    plan.press(8, 0)
+    plan.mouse.move(*plan.place(10, 5), steps=6)
+    expect(plan.page.locator(".readout")).to_have_text(re.compile(r"^2\.\d+ m × 5\.\d+ m$|^2\.\d+ m × 4\.9\d m$"))
+    plan.mouse.up()
+    assert plan.values("Places", "kind")[4] == "corridor"
+    corners = plan.outline(4)
+    assert corners[0] == [8, 0], "it snaps to the corner of the hall"
+    assert corners[2] == pytest.approx([10, 5], abs=0.06)
+    name = plan.panel.get_by_label("Place")
+    name.fill("Long corridor")
+    expect(plan.panel.locator(".details h2")).to_have_text("Long corridor")
+    plan.click(9, 4)  # another click first writes what was typed, into the cell that it was typed for
+    assert plan.values("Places", "place") == {2: "Hall", 3: "Door", 4: "Long corridor"}
+    expect(plan.page.locator(".mark-corridor .place-name")).to_have_text("Long corridor")
+    plan.page.get_by_role("button", name="Zoom out").click(click_count=4)
+    plan.click(6.5, 1)
+    expect(plan.panel.locator(".details h2")).to_have_text("Hall")
+    name.fill("Great")
+    plan.click(9, 4)
+    assert plan.values("Places", "place") == {2: "Great", 3: "Door", 4: "Long corridor"}
 
 
 def test_a_piece_that_would_block_the_way_changes_its_state(plan):
@@ -165,13 +221,13 @@ def test_corners_of_a_room_are_dragged_added_and_taken_out_and_a_new_name_keeps_
     expect(plan.page.locator(".band")).to_have_class(re.compile("state-open"))
 
 
-def test_a_click_on_a_segment_splits_it_and_one_beside_it_tells_what_to_click(plan):
+def test_a_click_on_a_way_splits_it_and_one_beside_it_tells_what_to_click(plan):
     before = plan.place(6, 3)
-    plan.tool("segment")
+    plan.tool("way")
     assert plan.place(6, 3) == before, "choosing a tool moves nothing under the mouse"
-    plan.page.get_by_label("Route of new segments").fill("Side way")
+    plan.page.get_by_label("Route of new ways").fill("Side way")
     plan.click(4, -0.4)
-    expect(plan.page.locator(".readout")).to_have_text("Click a room, door, stair, exit or junction.")
+    expect(plan.page.locator(".readout")).to_have_text("Click a room, corridor, door, stair or exit.")
     assert plan.values("Routes", "route") == {2: "Way out"}
     plan.click(6, 3)
     plan.page.get_by_role("button", name="Split it here").click()
@@ -195,14 +251,14 @@ def test_a_click_on_a_segment_splits_it_and_one_beside_it_tells_what_to_click(pl
 def test_a_room_is_drawn_by_keyboard_alone(empty):
     plan = empty
     plan.page.locator("svg.plan").focus()
-    plan.keyboard.press("p")
+    plan.keyboard.press("o")
     for keys in ("ArrowLeft", "ArrowUp " * 10, "ArrowRight " * 12, "Shift+ArrowDown " * 5):
         for key in keys.split():
             plan.keyboard.press(key)
         plan.keyboard.press("Enter")
     expect(plan.say()).to_have_text(re.compile(r"X .* m, Y .* m"))
     plan.keyboard.press("Enter")
-    corners = [[float(one) for one in corner.split()] for corner in plan.values("Places", "outline")[2].split("; ")]
+    corners = plan.outline(2)
     (x, y), *others = corners
     assert [one for corner in others for one in corner] == pytest.approx([x, y + 1, x + 1.2, y + 1, x + 1.2, y + 0.95])
     expect(plan.page.locator("[data-tool=select]")).to_have_attribute("aria-pressed", "true")

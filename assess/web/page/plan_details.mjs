@@ -1,98 +1,120 @@
-// The panel for what is selected: a piece, several, a place, a segment, with the cells that matter.
+// The panel for what is selected: pieces, a room or exit, a way, with the cells that matter; of a tool that draws, how it is used.
 
 import { badge, chanceText, classDetail, isPale } from "./classes.mjs";
-import { clear, el } from "./elements.mjs";
 import { fixButtons } from "./fixes.mjs";
+import { icon } from "./icons.mjs";
 import { ask } from "./messages.mjs";
+import { align, distribute } from "./plan_arrange.mjs";
+import { readNumber, roundTo } from "./plan_geometry.mjs";
+import { DOOR } from "./plan_model.mjs";
 import { shownLength } from "./plan_pieces.mjs";
+import { listTools } from "./plan_toolbar.mjs";
 import { isFilled } from "./sheet.mjs";
 import { number, t, tn } from "./texts.mjs";
+import { html, nothing, render } from "./vendor/lit-html.mjs";
 
-const PIECE_FIELDS = ["item", "room", "type", "anchored", "x", "y", "angle_deg", "against_wall"];
+const ALL_PIECES = ["floor", "room", "type", "breadth", "width", "height", "anchored", "against_wall"];
+const PIECE_FIELDS = ["item", ...ALL_PIECES, "x", "y", "angle_deg"];
 const PLACE_FIELDS = ["place", "kind", "x", "y"];
+const WAY_FIELDS = ["route", "segment", "start", "end", "room", "clear_width", "required_width", "occupants"];
 const WIDE = new Set(["type", "place"]);
-const SEGMENT_FIELDS = ["route", "segment", "start", "end", "room", "clear_width", "required_width", "occupants"];
+const WITH_WIDTH = new Set(["door", "exit"]);
+
+const button = (text, run, title = "") => html`<button type="button" title=${title} @click=${run}>${text}</button>`;
 
 export class Details {
   #shown = "";
+  #typed = null; // a name while it is typed
 
-  /** @param {{model, store, scene, edits, canEdit, remove, keys}} parts */
+  /** @param {{model, store, scene, edits, canEdit, remove, keys, currentTool}} parts */
   constructor(parts) {
     Object.assign(this, parts);
-    this.node = el("section", { class: "plan-section details", "aria-label": t("Selected") });
+    this.node = document.createElement("section");
+    this.node.className = "plan-section details";
+    this.node.setAttribute("aria-label", t("Selected"));
   }
 
   draw() {
-    const { selection } = this.store;
-    const { model } = this;
-    if (this.node.contains(document.activeElement) && document.activeElement.matches("input, select") && this.#shown === this.#key()) return;
-    this.#shown = this.#key();
-    clear(this.node);
-    const pieces = selection.sheet === "Items" ? selection.rows.filter((row) => model.pieces.has(row)) : [];
-    if (pieces.length === 1) this.#piece(pieces[0]);
-    else if (pieces.length > 1) this.#several(pieces);
-    else if (selection.sheet === "Places" && model.places.has(selection.row)) this.#place(selection.row);
-    else if (selection.sheet === "Routes" && model.segments.has(selection.row)) this.#segment(selection.row);
-    else this.#nothing();
-  }
-
-  #key() {
     const { sheet, rows } = this.store.selection;
-    return `${sheet} ${rows.join()}`;
+    const key = `${this.currentTool().name} ${sheet} ${rows.join()}`;
+    if (key !== this.#shown) {
+      this.#shown = key;
+      this.#commit();
+      this.#typed = null;
+    }
+    render(this.#content(), this.node);
+    for (const field of this.node.querySelectorAll("[data-shown]")) this.#fillIn(field);
   }
 
-  #add(...children) {
-    this.node.append(...children.filter(Boolean));
+  /** What is typed belongs to what was selected: it is written before something else is shown. */
+  #commit() {
+    const field = document.activeElement;
+    if (this.node.contains(field) && field.dataset.shown !== undefined && field.value !== field.dataset.shown) field.blur();
   }
 
-  #nothing() {
-    const count = this.model.pieces.size;
-    this.#add(el("p", { class: "muted", text: this.canEdit() ? t("Click a piece, a place or a segment; drag a frame to select several pieces.") : t("Tap a piece, a place or a segment.") }),
-      el("p", { class: "muted", text: tn("{n:,} piece on this floor.", "{n:,} pieces on this floor.", count) }));
+  /** The value of a cell in its field, but not over what is being typed. */
+  #fillIn(field) {
+    const { shown } = field.dataset;
+    if (field !== document.activeElement || field.was !== shown) field.value = shown;
+    field.was = shown;
+  }
+
+  #content() {
+    const { model, store: { selection } } = this;
+    const tool = this.currentTool();
+    if (tool.kindAt !== undefined || tool.name === "way") return html`<h2>${listTools().find(([name]) => name === tool.name)[1]}</h2><p class="muted">${tool.help()}</p>`;
+    const pieces = selection.sheet === "Items" ? selection.rows.filter((row) => model.pieces.has(row)) : [];
+    if (pieces.length === 1) return this.#piece(pieces[0]);
+    if (pieces.length > 1) return this.#several(pieces);
+    if (selection.sheet === "Places" && model.places.has(selection.row)) return this.#place(model.places.get(selection.row));
+    if (selection.sheet === "Routes" && model.segments.has(selection.row)) return this.#way(model.segments.get(selection.row));
+    const how = this.canEdit() ? t("Click a piece, a room, an exit or a way; drag a frame to select several pieces.") : `${t("Tap a piece, a room, an exit or a way.")} ${t("To edit, make the window at least 900 pixels wide; here the plan can be read.")}`;
+    return html`<p class="muted">${how}</p><p class="muted">${tn("{n:,} piece on this floor.", "{n:,} pieces on this floor.", model.pieces.size)}</p>`;
   }
 
   // ---- pieces
 
   #piece(row) {
     const piece = this.model.pieces.get(row);
-    const { key, word, live } = this.scene.pieces.classOf(piece);
+    const { key, text, live } = this.scene.pieces.classOf(piece);
     const unit = this.model.unit;
     const sizes = ["breadth", "width", "height"].map((name) => (piece.missing.includes(name) ? "?" : number(piece[name] / unit.factor, 2))).join(" × ");
-    this.#add(
-      el("h2", { text: piece.item }), piece.description && el("p", { text: piece.description }),
-      el("p", { class: "class-line" }, badge(key, { isPale: isPale(live) }), ` ${key ? chanceText(live) : word}`),
-      classDetail(live) && el("p", { class: "hint", text: classDetail(live) }),
-      el("p", { class: "muted", text: t("Breadth × Width × Height: {sizes} {unit}", { sizes, unit: unit.unit }) }),
-      ...piece.missing.map((name) => this.#lacking(row, name)));
-    if (!this.canEdit()) return;
-    this.#add(this.#fields("Items", row, PIECE_FIELDS), this.#pieceButtons([row]));
+    return html`<h2>${this.#typed ?? piece.item}</h2>${piece.description ? html`<p>${piece.description}</p>` : nothing}
+      <p>${badge(key, { isPale: isPale(live) })} ${key ? chanceText(live) : text}</p>
+      ${classDetail(live) ? html`<p class="hint">${classDetail(live)}</p>` : nothing}
+      <p class="muted">${t("Breadth × Width × Height: {sizes} {unit}", { sizes, unit: unit.unit })}</p>
+      ${piece.missing.map((name) => this.#lacking(row, name))}
+      ${this.canEdit() ? [this.#fields("Items", [row], PIECE_FIELDS), this.#pieceButtons([row])] : nothing}`;
   }
 
   /** A size that is not known, and the way to its cell. */
   #lacking(row, name) {
     const column = this.store.sheet("Items").column(name);
-    if (!column) return null;
+    if (!column) return nothing;
     const text = t("Fill in {size}: how far it reaches is not known.", { size: column.label });
-    return el("p", { class: "warning-text" }, this.canEdit() ? this.#button(text, () => this.#reveal("Items", row, column), { class: "quiet to-cell" }) : text);
+    return html`<p class="warning-text">${this.canEdit() ? html`<button type="button" class="quiet to-cell" @click=${() => this.#reveal("Items", row, column)}>${text}</button>` : text}</p>`;
   }
 
   #several(rows) {
-    const pieces = rows.map((row) => this.model.pieces.get(row));
-    this.#add(el("h2", { text: tn("{n:,} piece selected", "{n:,} pieces selected", rows.length) }),
-      el("p", { class: "muted", text: pieces.slice(0, 12).map((one) => one.item).join(", ") + (pieces.length > 12 ? " …" : "") }));
-    if (this.canEdit()) this.#add(this.#pieceButtons(rows));
+    const items = rows.map((row) => this.model.pieces.get(row).item);
+    return html`<h2>${tn("{n:,} piece selected", "{n:,} pieces selected", rows.length)}</h2>
+      <p class="muted">${items.slice(0, 12).join(", ") + (items.length > 12 ? " …" : "")}</p>
+      ${this.canEdit() ? [this.#arranging(rows), this.#fields("Items", rows, ALL_PIECES), this.#pieceButtons(rows)] : nothing}`;
   }
 
-  #button(text, run, props = {}) {
-    return el("button", { type: "button", text, on: { click: run }, ...props });
+  #arranging(rows) {
+    const pieces = () => rows.map((row) => this.model.pieces.get(row));
+    const one = (name, label, poses, isOff = false) => html`<button type="button" class="square" title=${label} aria-label=${label} ?disabled=${isOff}
+      @click=${() => this.edits.pose(poses(), label)}>${icon(name)}</button>`;
+    const sides = [["left", t("Align left")], ["centre", t("Align centres, one above the other")], ["right", t("Align right")], ["top", t("Align top")], ["middle", t("Align centres, side by side")], ["bottom", t("Align bottom")]];
+    const isFew = rows.length < 3;
+    return html`<div class="arranging" role="group" aria-label=${t("Align and distribute")}>${sides.map(([how, label]) => one(`align-${how}`, label, () => align(pieces(), how)))}
+      ${one("distribute-x", t("Equal gaps from left to right"), () => distribute(pieces(), 0), isFew)}${one("distribute-y", t("Equal gaps from top to bottom"), () => distribute(pieces(), 1), isFew)}</div>`;
   }
 
   #pieceButtons(rows) {
-    return el("div", { class: "buttons" },
-      this.#button(t("Turn 90°"), () => this.keys.turn(rows, 90), { title: "R" }),
-      this.#button(t("Copy"), () => this.edits.copy(rows, [0.5, -0.5]), { title: "Ctrl+D" }),
-      this.#button(t("Remove…"), () => this.remove(rows), { title: t("Delete") }),
-      this.#button(t("Show in the sheet"), () => this.#reveal("Items", rows[0])));
+    return html`<div class="buttons">${button(t("Turn 90°"), () => this.keys.turn(rows, 90), "R")}${button(t("Copy"), () => this.edits.copy(rows, [0.5, -0.5]), "Ctrl+D")}
+      ${button(t("Remove…"), () => this.remove(rows), t("Delete"))}${button(t("Show in the sheet"), () => this.#reveal("Items", rows[0]))}</div>`;
   }
 
   #reveal(sheet, row, column = this.store.sheet(sheet).columns[0]) {
@@ -100,40 +122,55 @@ export class Details {
     this.store.reveal([sheet, row, column.at]);
   }
 
-  // ---- places and segments
+  // ---- rooms, exits and ways
 
   #state(kind, row) {
     const state = this.model.stateOf(kind, row);
-    return state && el("p", { class: `state-line state-${state.standing ? "standing" : state.state.replace("_", "-")}${this.model.routesOld ? " old" : ""}` }, el("b", { text: state.word }), " ", state.detail);
+    return state ? html`<p class="state-line state-${state.standing ? "standing" : state.state.replace("_", "-")}${this.model.routesOld ? " old" : ""}"><b>${state.word}</b> ${state.detail}</p>` : nothing;
   }
 
-  #place(row) {
-    const place = this.model.places.get(row);
-    const corners = place.outline ? tn("Outline with {n} corner", "Outline with {n} corners", place.outline.length) : t("No outline");
-    this.#add(el("h2", { text: place.place }), this.#state("place", row), el("p", { class: "muted", text: corners }));
-    if (!this.canEdit()) return;
-    this.#add(this.#fields("Places", row, PLACE_FIELDS), el("div", { class: "buttons" },
-      place.outline && this.#button(t("Take the outline away"), () => this.edits.outline(row, null, t("outline"))),
-      this.#button(t("Delete…"), () => this.#delete("Places", row, place.place)), this.#button(t("Show in the sheet"), () => this.#reveal("Places", row))));
-    if (place.outline) this.#add(el("p", { class: "hint", text: t("Drag its corners; drag the middle of a side to add one; double-click a corner to take it out.") }));
+  #place(place) {
+    const { row, outline } = place;
+    const corners = outline ? tn("Outline with {n} corner", "Outline with {n} corners", outline.length) : t("No outline");
+    const waiting = outline ? this.edits.unplacedIn(place).length : 0;
+    return html`<h2>${this.#typed ?? place.place}</h2>${this.#state("place", row)}${WITH_WIDTH.has(place.kind) ? nothing : html`<p class="muted">${corners}</p>`}
+      ${this.canEdit() ? html`${this.#fields("Places", [row], PLACE_FIELDS, WITH_WIDTH.has(place.kind) ? this.#doorWidth(place) : nothing)}
+        <div class="buttons">
+          ${waiting ? button(html`${icon("walls")}${tn("Place {n} piece along the walls", "Place {n} pieces along the walls", waiting)}`, () => this.edits.placeAlongWalls(place)) : nothing}
+          ${outline ? button(t("Remove outline"), () => this.edits.outline(row, null, t("outline"))) : nothing}
+          ${button(t("Delete…"), () => this.#delete("Places", row, place.place))}${button(t("Show in the sheet"), () => this.#reveal("Places", row))}</div>
+        ${outline ? html`<p class="hint">${t("Drag its corners; drag the middle of a side to add one; double-click a corner to remove it.")}</p>` : nothing}` : nothing}`;
   }
 
-  #segment(row) {
-    const one = this.model.segments.get(row);
+  #doorWidth(place) {
+    const { unit, factor } = this.model.unit;
+    const width = this.model.widthOf(place);
+    const required = Math.max(...this.model.waysAt(place).map((one) => this.model.length("Routes", one.row, "required_width") ?? DOOR));
+    const write = ({ target }) => {
+      const metres = target.value.trim() === "" ? null : readNumber(target.value) * factor;
+      if (metres === null || metres > 0) this.edits.doorWidth(place, metres);
+      this.draw();
+    };
+    return html`<label class="field" title=${t("The clear width of the ways through it.")}><span class="field-name">${t("Width")} [${unit}]</span>
+      <input inputmode="decimal" autocomplete="off" placeholder=${number(DOOR / factor, 1)} data-shown=${width === null ? "" : number(roundTo(width / factor, 0.01))} @change=${write}>
+      ${width !== null && width < required ? html`<span class="warning-text hint">${t("Narrower than Required width: ways through it count as blocked.")}</span>` : nothing}</label>`;
+  }
+
+  #way(one) {
     const length = one.points.length === 2 ? Math.hypot(one.points[1][0] - one.points[0][0], one.points[1][1] - one.points[0][1]) : null;
-    this.#add(el("h2", { text: `${one.route}, ${one.segment}` }), this.#state("segment", row),
-      el("p", { class: "muted", text: length === null ? t("A place of it has no X and Y.") : t("Length {length}", { length: shownLength(length, this.model.unit) }) }));
-    if (!this.canEdit()) return;
-    this.#add(this.#fields("Routes", row, SEGMENT_FIELDS), el("div", { class: "buttons" },
-      this.#button(t("Delete…"), () => this.#delete("Routes", row, `${one.route}, ${one.segment}`)), this.#button(t("Show in the sheet"), () => this.#reveal("Routes", row))));
+    const name = `${one.route}, ${one.segment}`;
+    return html`<h2>${name}</h2>${this.#state("segment", one.row)}
+      <p class="muted">${length === null ? t("A place of it has no X and Y.") : t("Length {length}", { length: shownLength(length, this.model.unit) })}</p>
+      ${this.canEdit() ? html`${this.#fields("Routes", [one.row], WAY_FIELDS)}<div class="buttons">
+        ${button(t("Delete…"), () => this.#delete("Routes", one.row, name))}${button(t("Show in the sheet"), () => this.#reveal("Routes", one.row))}</div>` : nothing}`;
   }
 
-  /** The place or the segment that is selected. */
+  /** The place or the way that is selected. */
   deleteSelected() {
     const { sheet, row } = this.store.selection;
-    const [place, segment] = [this.model.places.get(row), this.model.segments.get(row)];
+    const [place, way] = [this.model.places.get(row), this.model.segments.get(row)];
     if (sheet === "Places" && place) this.#delete(sheet, row, place.place);
-    else if (sheet === "Routes" && segment) this.#delete(sheet, row, `${segment.route}, ${segment.segment}`);
+    else if (sheet === "Routes" && way) this.#delete(sheet, row, `${way.route}, ${way.segment}`);
   }
 
   async #delete(sheet, row, name) {
@@ -141,47 +178,46 @@ export class Details {
     if (answer) this.edits.deleteRows(sheet, [row]);
   }
 
-  // ---- fields: one a cell
+  // ---- fields: one a column, for the cells of all rows
 
-  #fields(sheetName, row, fields) {
+  #fields(sheetName, rows, fields, more = nothing) {
     const sheet = this.store.sheet(sheetName);
-    const columns = fields.map((field) => sheet.column(field)).filter(Boolean);
-    return el("div", { class: "cell-fields" }, columns.map((column) => this.#field(sheet, row, column)));
+    return html`<div class="cell-fields">${fields.map((field) => sheet.column(field)).filter(Boolean).map((column) => this.#field(sheet, rows, column))}${more}</div>`;
   }
 
-  #field(sheet, row, column) {
-    const value = sheet.value(row, column.at);
-    const problem = this.store.problemAt(sheet.name, row, column.at);
-    const label = column.unit ? `${column.label} [${column.unit}]` : column.label;
-    const input = column.choices.length ? this.#choices(column, value) : this.#input(column, value);
-    input.addEventListener("change", () => this.#write(sheet.name, row, column, input.value));
-    input.title = problem ? problem.message : column.help;
-    if (problem?.severity === "error") input.setAttribute("aria-invalid", "true");
-    const isWide = WIDE.has(column.field);
-    return el("label", { class: isWide ? "field wide" : "field" }, el("span", { class: "field-name", text: label }), input, problem && el("span", { class: problem.severity === "error" ? "error-text hint" : "warning-text hint", text: problem.message }), problem && fixButtons(this.store, problem));
+  #field(sheet, rows, column) {
+    const values = [...new Set(rows.map((row) => sheet.value(row, column.at) ?? ""))];
+    const isMixed = values.length > 1;
+    const problem = rows.length === 1 ? this.store.problemAt(sheet.name, rows[0], column.at) : null;
+    const css = problem?.severity === "error" ? "error-text hint" : "warning-text hint";
+    const shown = isMixed ? "" : typeof values[0] === "number" ? number(values[0]) : String(values[0]);
+    const own = { shown, isMixed, title: problem ? problem.message : column.help, isWrong: problem?.severity === "error", write: ({ target }) => this.#write(sheet.name, rows, column, target) };
+    return html`<label class=${WIDE.has(column.field) ? "field wide" : "field"}><span class="field-name">${column.unit ? `${column.label} [${column.unit}]` : column.label}</span>
+      ${column.choices.length ? this.#choices(column, own) : this.#input(column, own)}${problem ? html`<span class=${css}>${problem.message}</span>${fixButtons(this.store, problem)}` : nothing}</label>`;
   }
 
-  #choices(column, value) {
-    const options = ["", ...column.choices, ...(isFilled(value) && !column.choices.includes(value) ? [String(value)] : [])];
-    const select = el("select", null, options.map((one) => el("option", { value: one, text: one || "–" })));
-    select.value = isFilled(value) ? String(value) : "";
-    return select;
+  #choices(column, { shown, isMixed, title, isWrong, write }) {
+    const others = shown && !column.choices.includes(shown) ? [shown] : [];
+    return html`<select title=${title} aria-invalid=${isWrong} data-shown=${isMixed ? " " : shown} @change=${write}>
+      ${isMixed ? html`<option value=" " hidden>${t("several")}</option>` : nothing}<option value="">–</option>${[...column.choices, ...others].map((one) => html`<option value=${one}>${one}</option>`)}</select>`;
   }
 
-  #input(column, value) {
-    const input = el("input", { value: typeof value === "number" ? number(value) : value ?? "", autocomplete: "off", inputMode: column.kind === "number" ? "decimal" : "text" });
+  #input(column, { shown, isMixed, title, isWrong, write }) {
     const source = column.source && this.store.sheet(column.source);
     const names = source?.found ? source.names(source.columns.find((one) => one.required)?.field ?? "") : [];
-    if (!names.length) return input;
-    const id = `plan-list-${column.field}`;
-    input.setAttribute("list", id);
-    this.#add(el("datalist", { id }, names.map((name) => el("option", { value: name }))));
-    return input;
+    const isName = column.field === "item" || column.field === "place";
+    const typed = isName ? ({ target }) => ((this.#typed = target.value), this.draw()) : null;
+    return html`<input title=${title} aria-invalid=${isWrong} autocomplete="off" inputmode=${column.kind === "number" ? "decimal" : "text"} placeholder=${isMixed ? t("several") : ""}
+      list=${names.length ? `plan-list-${column.field}` : nothing} data-shown=${shown} @input=${typed} @change=${write}>
+      ${names.length ? html`<datalist id="plan-list-${column.field}">${names.map((name) => html`<option value=${name}></option>`)}</datalist>` : nothing}`;
   }
 
-  #write(sheet, row, column, text) {
-    const value = text.trim() === "" ? null : text.trim();
-    if (sheet === "Places" && column.field === "place") this.edits.renamePlace(row, value);
-    else this.store.edit([[sheet, row, column.at, value]], column.label);
+  async #write(sheet, rows, column, field) {
+    const value = isFilled(field.value.trim()) ? field.value.trim() : null;
+    const isName = sheet === "Places" && column.field === "place";
+    const done = await (isName ? this.edits.renamePlace(rows[0], value) : this.store.edit(rows.map((row) => [sheet, row, column.at, value]), column.label));
+    this.#typed = null;
+    if (!done && field.isConnected) field.value = field.dataset.shown;
+    this.draw();
   }
 }

@@ -1,7 +1,9 @@
-// Tools that take points one after the other: what they share, measure, draw a place.
+// Tools that take points one after the other: what they share, measure, draw rooms and corridors, doors, stairs and exits.
 
 import { distance, roundTo } from "./plan_geometry.mjs";
+import { DOOR } from "./plan_model.mjs";
 import { isDrag } from "./plan_pointer.mjs";
+import { nearestWall, sidesOf } from "./plan_snap.mjs";
 import { shownLength } from "./plan_pieces.mjs";
 import { t } from "./texts.mjs";
 
@@ -10,7 +12,8 @@ const STEP = 0.1; // of the cross-hair [m]
 const FINE = 0.01;
 const CROSS_PX = 14;
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-const OUTLINED = 2; // kinds from this on are points: door, stair, exit
+const LEAST_SIDE = 0.3; // of a rectangle [m]
+const WALL_PX = 24; // within which a door goes to a wall
 
 /**
  * What all of them share: a point follows the pointer, a press and release at the same place sets it. By keys a cross-hair
@@ -20,8 +23,8 @@ export class PointsTool {
   takesTouch = true;
   points = [];
   cursor = null; // the cross-hair, while it is moved by keys
+  pressed = null; // where the mouse was pressed
   #pointer = null;
-  #pressed = null;
 
   constructor(parts) {
     Object.assign(this, parts);
@@ -29,36 +32,38 @@ export class PointsTool {
 
   enter() {
     this.points = [];
+    this.isActive = true;
     this.#pointer = null;
     this.say(`${this.help()} ${t("Arrow keys and Enter set points, too.")}`);
   }
 
   leave() {
     this.points = [];
-    this.cursor = null;
+    this.isActive = false;
+    this.pressed = this.cursor = null;
     this.scene.sketch();
   }
 
   down(point) {
-    this.#pressed = point;
+    this.pressed = point;
   }
 
   cancel() {
-    this.#pressed = null;
+    this.pressed = null;
   }
 
   move(point) {
     this.#pointer = point.at;
     this.cursor = null;
-    this.draw(this.snap(point));
+    this.draw(this.snap(point), point);
   }
 
   up(point) {
-    const from = this.#pressed;
-    this.#pressed = null;
+    const from = this.pressed;
+    this.pressed = null;
     if (from && isDrag(from.px, point.px) && this.dragsToo) this.add(this.snap(from), from);
     this.add(this.snap(point), point);
-    this.draw(this.snap(point));
+    if (this.isActive) this.draw(this.snap(point), point);
   }
 
   snap(point) {
@@ -85,7 +90,7 @@ export class PointsTool {
     this.cursor = [roundTo(x + dx * step, step), roundTo(y + dy * step, step)];
     this.viewport.reveal(this.cursor);
     const found = this.snap(this.#aim());
-    this.draw(found);
+    this.draw(found, this.#aim());
     const { unit } = this.model;
     const place = found.place ? `; ${found.place.place}` : "";
     this.say(t("X {x}, Y {y}", { x: shownLength(this.cursor[0], unit), y: shownLength(this.cursor[1], unit) }) + place);
@@ -99,7 +104,7 @@ export class PointsTool {
   #set() {
     const aim = this.#aim();
     this.add(this.snap(aim), aim);
-    if (this.cursor) this.draw(this.snap(aim));
+    if (this.cursor) this.draw(this.snap(aim), aim);
   }
 
   guides(found) {
@@ -138,24 +143,36 @@ export class MeasureTool extends PointsTool {
   }
 }
 
-export class PlaceTool extends PointsTool {
-  name = "place";
-  kindAt = 0;
-
-  get isPoint() {
-    return this.kindAt >= OUTLINED;
+/** A room or a corridor: a rectangle that is dragged, or its corners one after the other. */
+export class OutlineTool extends PointsTool {
+  help() {
+    return t("Drag a rectangle, or click the corners; Enter, a double click or a click on the first corner closes. Escape leaves.");
   }
 
-  help() {
-    return this.isPoint ? t("Click where it is.") : t("Click the corners; Enter, a double click or a click on the first corner closes. Escape leaves.");
+  /** While the mouse is held: the corners of the rectangle from where it was pressed. */
+  #rectangle(found, { px }) {
+    if (!this.pressed || this.points.length || !isDrag(this.pressed.px, px)) return null;
+    const [[a, b], [c, d]] = [this.snap(this.pressed).point, found.point];
+    return [[a, b], [c, b], [c, d], [a, d]];
+  }
+
+  up(point) {
+    const ring = this.#rectangle(this.snap(point), point);
+    if (!ring) return super.up(point);
+    this.pressed = null;
+    if (Math.min(distance(ring[0], ring[1]), distance(ring[1], ring[2])) >= LEAST_SIDE) this.#finish(ring);
+    else this.scene.sketch();
+    return null;
+  }
+
+  #finish(ring) {
+    this.points = [];
+    this.scene.sketch();
+    this.edits.addPlace(this.kindAt, ring);
+    this.done();
   }
 
   add({ point }, raw) {
-    if (this.isPoint) {
-      this.edits.addPlace(this.kindAt, null, point);
-      this.done();
-      return;
-    }
     const [first] = this.points;
     const isLast = this.cursor && this.points.length && distance(this.points.at(-1), raw.at) <= FINE / 2; // Enter twice
     if (this.points.length >= 3 && (isLast || distance(first, raw.at) * this.viewport.scale < CLOSE_PX)) this.close();
@@ -167,12 +184,7 @@ export class PlaceTool extends PointsTool {
   }
 
   close() {
-    if (this.points.length < 3) return;
-    const ring = this.points;
-    this.points = [];
-    this.scene.sketch();
-    this.edits.addPlace(this.kindAt, ring);
-    this.done();
+    if (this.points.length >= 3) this.#finish(this.points);
   }
 
   key(event) {
@@ -181,9 +193,37 @@ export class PlaceTool extends PointsTool {
     return super.key(event);
   }
 
-  draw(found) {
+  draw(found, point) {
     const before = this.points.at(-1);
-    const text = before ? [{ at: found.point, text: shownLength(distance(before, found.point), this.model.unit) }] : [];
-    this.scene.sketch([{ name: "drawn", points: [...this.points, found.point], dots: true, isClosed: this.points.length > 1 }, ...this.guides(found)], text);
+    const ring = this.#rectangle(found, point);
+    const length = (a, b) => shownLength(distance(a, b), this.model.unit);
+    const text = ring ? `${length(ring[0], ring[1])} × ${length(ring[1], ring[2])}` : before && length(before, found.point);
+    this.scene.sketch([{ name: "drawn", points: ring ?? [...this.points, found.point], dots: true, isClosed: Boolean(ring) || this.points.length > 1 }, ...this.guides(found)], text ? [{ at: found.point, text }] : []);
+  }
+}
+
+/** A door, a stair or an exit: one click; doors and exits go to the nearest wall, as wide as the toolbar says. */
+export class PointTool extends PointsTool {
+  width = null; // [m]
+
+  help() {
+    return this.hasWidth ? t("Click a wall where it is; with Alt it may stand anywhere.") : t("Click where it is.");
+  }
+
+  snap(point) {
+    const walls = [...this.model.places.values()].filter((one) => one.outline).flatMap((one) => sidesOf(one.outline));
+    const wall = this.hasWidth && !point.alt ? nearestWall(point.at, walls, WALL_PX / this.viewport.scale) : null;
+    return wall ? { point: wall.point, guides: [[wall.a, wall.b]], wall } : super.snap(point);
+  }
+
+  add({ point }) {
+    this.edits.addPlace(this.kindAt, null, point, this.hasWidth ? this.width : null);
+    this.done();
+  }
+
+  draw({ point: [x, y], wall, ...found }) {
+    const half = (this.width ?? DOOR) / 2;
+    const [dx, dy] = wall && this.hasWidth ? wall.d.map((one) => one * half) : [0, 0];
+    this.scene.sketch([...this.guides(found), { name: "drawn door", points: [[x - dx, y - dy], [x + dx, y + dy]], dots: true }]);
   }
 }

@@ -5,42 +5,48 @@ import { isDrag } from "./plan_pointer.mjs";
 import { el } from "./elements.mjs";
 
 /**
- * @param {HTMLElement} button a row of the list
- * @param {{view: object, size: () => {breadth, width, angle}, drop: (at: number[]) => void}} options
+ * @param {HTMLElement} list its buttons of the class draggable are dragged
+ * @param {object} view the plan
+ * @param {(button: HTMLElement) => {size: () => {breadth, width, angle}, drop: (at: number[]) => void}} find
  */
-export function dragOnto(button, { view, size, drop }) {
-  let from = null;
+export function dragFrom(list, view, find) {
+  let held = null; // {from, button, size, drop}
   let ghost = null;
   const end = () => {
-    from = null;
+    held = null;
     ghost?.remove();
     ghost = null;
     view.scene.sketch();
   };
-  button.addEventListener("pointerdown", (event) => {
-    if (event.button !== 0 || button.disabled) return;
-    from = [event.clientX, event.clientY];
+  const buttonOf = ({ target }) => target.closest(".draggable:not(:disabled)");
+  list.addEventListener("pointerdown", (event) => {
+    const button = buttonOf(event);
+    if (event.button !== 0 || !button) return;
+    held = { from: [event.clientX, event.clientY], button, ...find(button) };
     button.setPointerCapture(event.pointerId);
   });
-  button.addEventListener("pointermove", (event) => {
-    if (!from || (!ghost && !isDrag(from, [event.clientX, event.clientY]))) return;
-    if (!ghost) document.body.append((ghost = el("div", { class: "plan-ghost", text: button.textContent })));
+  list.addEventListener("pointermove", (event) => {
+    if (!held || (!ghost && !isDrag(held.from, [event.clientX, event.clientY]))) return;
+    if (!ghost) document.body.append((ghost = el("div", { class: "plan-ghost", text: held.button.innerText })));
     ghost.style.setProperty("transform", `translate(${event.clientX + 12}px, ${event.clientY + 12}px)`);
-    const found = aim(view, event, size());
+    const found = aim(view, event, held.size());
     ghost.hidden = found !== null;
     view.scene.sketch(found ? [{ name: "drawn", points: corners(found.piece), isClosed: true }, ...found.guides.map((points) => ({ name: "guide", points }))] : []);
   });
-  button.addEventListener("pointerup", (event) => {
-    const found = ghost ? aim(view, event, size()) : null;
+  list.addEventListener("pointerup", (event) => {
+    if (!held) return;
+    const found = ghost ? aim(view, event, held.size()) : null;
+    const { drop } = held;
     end();
     if (found) drop([found.piece.x, found.piece.y]);
   });
-  button.addEventListener("pointercancel", end);
-  button.addEventListener("keydown", (event) => {
+  list.addEventListener("pointercancel", end);
+  list.addEventListener("keydown", (event) => {
     if (event.key === "Escape" && ghost) end();
-    if (event.key !== "Enter") return;
+    const button = buttonOf(event);
+    if (event.key !== "Enter" || !button) return;
     event.preventDefault();
-    drop(view.viewport.centre.map((one) => roundTo(one, 0.01)));
+    find(button).drop(view.viewport.centre.map((one) => roundTo(one, 0.01)));
   });
 }
 

@@ -1,17 +1,19 @@
 // What gestures on the plan write into the workbook. Every function is one edit, so one step of undo.
 
-import { inUnit, pointInside, roundTo, wholeAngle, writeOutline } from "./plan_geometry.mjs";
-import { nameKey } from "./plan_model.mjs";
+import { standAlongWalls } from "./plan_arrange.mjs";
+import { axisOf, corners, direction, inUnit, pointInside, roundTo, wholeAngle, writeOutline } from "./plan_geometry.mjs";
+import { DOOR, nameKey } from "./plan_model.mjs";
+import { nearestWall, sidesOf } from "./plan_snap.mjs";
 import { isFilled, nextName } from "./sheet.mjs";
 import { notice } from "./messages.mjs";
-import { t } from "./texts.mjs";
+import { t, tn } from "./texts.mjs";
 
 const CENTIMETRE = 0.01;
 const MILLIMETRE = 0.001;
 const UNMOVED = 0.0005;
-const AXIS_WITHIN = 15; // degrees from X or Y within which an angle tells the axis, as the core has it
 const ANCHORED_YES = 1;
 const CORRIDOR = 1;
+const POINTS = new Set(["door", "stair", "exit"]);
 
 export class PlanEdits {
   constructor(model, store) {
@@ -178,10 +180,52 @@ export class PlanEdits {
     return shift && typeof value === "number" ? inUnit(value * column.factor + shift, column) : value;
   }
 
+  /** The pieces of a room that are not on the plan yet. */
+  unplacedIn(place) {
+    return (this.model.plan?.unplaced ?? []).map((one) => one.row).filter((row) => this.model.roomNamed(this.model.text("Items", row, "room")) === place);
+  }
+
+  /** Stand the pieces of a room that are not on the plan yet along its walls, clear of doors, ways and pieces. */
+  async placeAlongWalls(place) {
+    const { model } = this;
+    await model.loadTypes().catch(() => {});
+    const rows = this.unplacedIn(place);
+    const single = rows.filter((row) => !(model.length("Items", row, "quantity") > 1));
+    const axis = this.store.sheet("Items").column("axis");
+    const pieces = single.map((row) => ({ row, ...model.sizeOf(row), axis: axis ? axis.choices.indexOf(model.text("Items", row, "axis")) : -1 }));
+    const others = [...model.pieces.values()].map(corners);
+    const ways = [...model.segments.values()].map((one) => one.outline).filter(Boolean);
+    const poses = standAlongWalls(place.outline, pieces, [...others, ...ways, ...this.#doorways()]);
+    const placed = new Set(poses.map((one) => one.row));
+    const done = await this.pose(poses, t("place along the walls"));
+    if (!done) return;
+    if (poses.length) this.select("Items", poses.map((one) => one.row));
+    const names = (all) => all.map((row) => model.text("Items", row, "item")).join(", ");
+    const [left, several] = [single.filter((row) => !placed.has(row)), rows.filter((row) => !single.includes(row))];
+    const text = [
+      poses.length && tn("{n} piece placed along the walls of {room}.", "{n} pieces placed along the walls of {room}.", poses.length, { room: place.place }),
+      left.length && t("No room along the walls for {items}.", { items: names(left) }),
+      several.length && t("{items}: give each piece a row of its own.", { items: names(several) }),
+    ].filter(Boolean).join(" ");
+    if (poses.length) this.store.offerUndo(text);
+    else notice(text);
+  }
+
+  /** What doors, stairs and exits on walls need to be free on both sides. */
+  #doorways() {
+    const { model } = this;
+    const walls = [...model.places.values()].filter((one) => one.outline).flatMap((one) => sidesOf(one.outline));
+    return [...model.places.values()].filter((one) => POINTS.has(one.kind) && one.x !== null && one.y !== null).map(({ x, y, ...one }) => {
+      const width = model.widthOf(one) ?? DOOR;
+      const wall = nearestWall([x, y], walls, DOOR / 2);
+      return corners({ x, y, angle: wall ? direction([0, 0], wall.d) + 90 : 0, breadth: 2 * width, width: wall ? width : 2 * width });
+    });
+  }
+
   // ---- places and segments
 
-  /** Add a place: a ring of corners, or a point. */
-  addPlace(kindAt, ring, point) {
+  /** Add a place: a ring of corners, or a point; the width of a door is kept until a way leads through it. */
+  addPlace(kindAt, ring, point, width = null) {
     const row = this.#freeRow("Places");
     if (row === null) return null;
     const sheet = this.store.sheet("Places");
@@ -194,9 +238,16 @@ export class PlanEdits {
       ...this.length("Places", row, "x", x), ...this.length("Places", row, "y", y), ...this.cell("Places", row, "kind", kind),
       ...(ring && column ? this.cell("Places", row, "outline", writeOutline(ring, column)) : []),
     ];
+    this.model.doorWidths.set(row, width);
     const done = this.#edit(edits, t("draw a place"));
     this.select("Places", [row]);
     return done;
+  }
+
+  /** The width of a door is the clear width of the ways through it. */
+  doorWidth(place, width) {
+    this.model.doorWidths.set(place.row, width);
+    return this.#edit(this.model.waysAt(place).flatMap((one) => this.length("Routes", one.row, "clear_width", width)), t("width of a door"));
   }
 
   outline(row, ring, label = t("outline")) {
@@ -218,8 +269,9 @@ export class PlanEdits {
     return this.#edit([...this.cell("Places", row, "place", name), ...(name && old ? named : [])], t("name"));
   }
 
-  /** Add a segment of a route between two places. */
+  /** Add a way between two places to a route; a door at its end has its width. */
   addSegment(route, from, to) {
+    const widths = [from, to].filter((one) => POINTS.has(one.kind)).map((one) => this.model.widthOf(one)).filter((one) => one !== null);
     const row = this.#freeRow("Routes");
     if (row === null) return null;
     const sheet = this.store.sheet("Routes");
@@ -227,9 +279,10 @@ export class PlanEdits {
     const own = sheet.rowNumbers.filter((one) => nameKey(sheet.value(one, routeAt)) === nameKey(route)).map((one) => String(sheet.value(one, segmentAt) ?? ""));
     const edits = [
       ...this.cell("Routes", row, "route", route), ...this.cell("Routes", row, "segment", nextName(String(own.length), own)),
-      ...this.cell("Routes", row, "floor", this.model.floorValue), ...this.cell("Routes", row, "start", from), ...this.cell("Routes", row, "end", to),
+      ...this.cell("Routes", row, "floor", this.model.floorValue), ...this.cell("Routes", row, "start", from.place), ...this.cell("Routes", row, "end", to.place),
+      ...(widths.length ? this.length("Routes", row, "clear_width", Math.min(...widths)) : []),
     ];
-    const done = this.#edit(edits, t("draw a segment"));
+    const done = this.#edit(edits, t("draw a way"));
     this.select("Routes", [row]);
     return done;
   }
@@ -254,7 +307,7 @@ export class PlanEdits {
       ...this.cell("Places", placeRow, "place", place), ...this.cell("Places", placeRow, "floor", this.model.floorValue), ...this.cell("Places", placeRow, "kind", kind),
       ...this.length("Places", placeRow, "x", x, MILLIMETRE), ...this.length("Places", placeRow, "y", y, MILLIMETRE),
       ...this.cell("Routes", row, "end", place), ...copied,
-    ], t("split a segment"));
+    ], t("split a way"));
     return { row: placeRow, place, x, y };
   }
 
@@ -278,11 +331,4 @@ export class PlanEdits {
     const yes = this.#choice("Items", "anchored", ANCHORED_YES);
     return this.#edit(rows.flatMap((row) => this.cell("Items", row, "anchored", yes)), label);
   }
-}
-
-/** The axis that an angle tells: 0 X, 1 Y, -1 neither. */
-function axisOf(angle) {
-  const folded = ((angle % 180) + 180) % 180;
-  if (Math.min(folded, 180 - folded) <= AXIS_WITHIN) return 0;
-  return Math.abs(folded - 90) <= AXIS_WITHIN ? 1 : -1;
 }

@@ -1,6 +1,7 @@
 // Geometry of the plan, in metres with Y up; angles in degrees, anticlockwise from X. Nothing here knows of the screen.
 
 const FULL = 360;
+const AXIS_WITHIN = 15; // degrees from X or Y
 
 export const radians = (degrees) => (degrees * Math.PI) / 180;
 export const distance = ([a, b], [c, d]) => Math.hypot(c - a, d - b);
@@ -14,6 +15,13 @@ export function turnPoint([x, y], degrees) {
 
 /** An angle from 0 to below 360, in whole degrees. */
 export const wholeAngle = (degrees) => ((Math.round(degrees) % FULL) + FULL) % FULL;
+
+/** The axis that an angle tells, as the core has it: 0 X, 1 Y, -1 neither. */
+export function axisOf(angle) {
+  const folded = ((angle % 180) + 180) % 180;
+  if (Math.min(folded, 180 - folded) <= AXIS_WITHIN) return 0;
+  return Math.abs(folded - 90) <= AXIS_WITHIN ? 1 : -1;
+}
 
 /** The direction from one point to another, in degrees. */
 export const direction = ([a, b], [c, d]) => (Math.atan2(d - b, c - a) * 180) / Math.PI;
@@ -78,6 +86,9 @@ function centroidOf(ring) {
 }
 
 // ---- numbers as the workbook holds them
+
+/** A number as people type it, with a point or a comma. */
+export const readNumber = (text) => (text.trim() === "" ? NaN : Number(text.trim().replace(",", ".")));
 
 /** A value rounded to a step, without the digits that binary numbers leave. */
 export const roundTo = (value, step) => Number((Math.round(value / step) * step).toFixed(6));

@@ -2,6 +2,7 @@
 
 import { roundTo } from "./plan_geometry.mjs";
 import { shownLength } from "./plan_pieces.mjs";
+import { listTools } from "./plan_toolbar.mjs";
 import { tn, t } from "./texts.mjs";
 
 const STEP = 0.05; // metres
@@ -20,14 +21,14 @@ export const listKeys = () => [
   ["R", t("turn by 90°, with Shift by 15°")],
   ["Ctrl+D", t("a copy next to it")],
   ["Ctrl+C, Ctrl+V", t("copy; paste on this floor or another, at the pointer")],
-  [t("Delete"), t("take off the plan, or delete the row")],
+  [t("Delete"), t("remove from the plan, or delete the row")],
   ["Ctrl+Z, Ctrl+Y", t("undo, redo")],
   ["Ctrl+A", t("select all pieces of the floor")],
   [t("Arrow keys, Enter"), t("while drawing: move the cross-hair by 10 cm, with Shift by 1 cm; set a point, twice to close")],
   ["Alt", t("while dragging: no snapping")],
   [t("Wheel, + and −"), t("zoom; 0 shows all")],
   [t("Space and drag, middle button"), t("move the view")],
-  ["V, M, P, S", t("select, measure, draw a place, draw a segment")],
+  [listTools().map(([, , key]) => key).join(", "), listTools().map(([, label]) => label).join(", ")],
 ];
 
 export class PlanKeys {
@@ -140,8 +141,8 @@ export class PlanKeys {
     const view = { "+": () => this.viewport.zoom(1.25), "=": () => this.viewport.zoom(1.25), "-": () => this.viewport.zoom(0.8), "−": () => this.viewport.zoom(0.8), 0: () => this.fit() }[key];
     if (view) return view(), true;
     if (!this.canEdit()) return false;
-    const tool = { v: "select", m: "measure", p: "place", s: "segment" }[key.toLowerCase()];
-    if (tool) return this.setTool(tool), true;
+    const tool = listTools().find((one) => one[2] === key.toUpperCase());
+    if (tool) return this.setTool(tool[0]), true;
     const rows = this.#rows();
     if (key.toLowerCase() === "r" && rows.length) return this.turn(rows, shiftKey ? TURN_FINE : TURN), true;
     if (key === "Delete" || key === "Backspace") return this.remove(rows), true;

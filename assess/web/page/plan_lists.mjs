@@ -1,177 +1,167 @@
 // Lists beside the plan: pieces by class and those not placed yet, types to add, states of routes and rooms.
 
-import { CLASSES, chanceText, describe, isPale } from "./classes.mjs";
-import { clear, el } from "./elements.mjs";
+import { CLASSES, classStyle, describe } from "./classes.mjs";
+import { icon } from "./icons.mjs";
 import { nameKey } from "./plan_model.mjs";
 import { shownLength } from "./plan_pieces.mjs";
-import { percent, t, tn } from "./texts.mjs";
+import { t, tn } from "./texts.mjs";
+import { html, nothing, render } from "./vendor/lit-html.mjs";
 
 const MOST = 200;
 
-/** A field that filters a list as one types. */
-function searchField(label, draw) {
-  return el("input", { type: "search", "aria-label": label, placeholder: label, on: { input: draw } });
-}
-
 const matches = (words, ...texts) => words.every((word) => texts.some((text) => nameKey(text).includes(word)));
-const wordsOf = (input) => nameKey(input.value).split(" ").filter(Boolean);
 
-export class PieceLists {
-  /** @param {{model, store, scene, edits, canEdit, startDrag, goTo}} parts */
-  constructor(parts) {
-    Object.assign(this, parts);
-    this.search = searchField(t("Find a piece"), () => this.draw());
-    this.unplaced = el("div", { class: "unplaced" });
-    this.list = el("div", { class: "by-class" });
-    this.node = el("section", { class: "plan-section", "aria-label": t("Pieces") }, this.search, this.unplaced, this.list);
+/** A list of the panel: `content(words)` is its template, with the words that it is filtered by. */
+class List {
+  #words = [];
+
+  /** @param {object} parts what the plan is made of @param {string} label @param {string} search what its field says; "" where it has none */
+  constructor(parts, label, search = "") {
+    Object.assign(this, parts, { label, search });
+    this.node = document.createElement("section");
+    this.node.className = "plan-section";
+    this.node.setAttribute("aria-label", label);
   }
 
   draw() {
-    const words = wordsOf(this.search);
-    this.#drawUnplaced((this.model.plan?.unplaced ?? []).filter((one) => matches(words, one.item, one.description)));
-    const found = this.scene.pieces.order().map((row) => this.model.pieces.get(row)).filter((one) => matches(words, one.item, one.description));
-    const chance = (one) => this.scene.pieces.classOf(one).chance ?? 0;
-    const sorted = [...found].sort((one, other) => chance(other) - chance(one)); // stable: else in the order of reading
-    const groups = [...CLASSES, ""].map((key) => [key, sorted.filter((one) => this.scene.pieces.classOf(one).key === key)]).filter(([, all]) => all.length);
-    clear(this.list).append(...groups.map(([key, all]) => this.#group(key, all)));
-    if (!found.length) this.list.append(el("p", { class: "muted", text: t("No piece of this floor is on the plan.") }));
+    const filter = ({ target }) => ((this.#words = nameKey(target.value).split(" ").filter(Boolean)), this.draw());
+    render(html`${this.search ? html`<input type="search" aria-label=${this.search} placeholder=${this.search} @input=${filter}>` : nothing}${this.content(this.#words)}`, this.node);
   }
 
-  #group(key, pieces) {
-    const { sign, word, css } = describe(key);
-    const heading = el("h2", { class: "group-head" }, el("span", { class: `badge ${css}`, "aria-hidden": "true", text: sign }), ` ${word} (${pieces.length})`);
-    const rest = pieces.length - MOST;
-    return el("div", null, heading, el("ul", { class: "rows" }, pieces.slice(0, MOST).map((one) => this.#row(one)), rest > 0 && el("li", { text: tn("{n:,} more", "{n:,} more", rest) })));
-  }
-
-  #row(piece) {
-    const { chance, isAnchored, word, live } = this.scene.pieces.classOf(piece);
-    const fails = chance === null ? "" : ` ${t("{chance} if the anchor fails", { chance: percent(chance) })}`;
-    const isSelected = this.scene.pieces.selected.has(piece.row);
-    return el("li", null, el("button", { type: "button", class: "quiet row", "aria-pressed": String(isSelected), dataset: { row: piece.row }, on: { click: () => this.goTo("Items", piece.row, [piece.x, piece.y]) } },
-      el("b", { text: piece.item }), el("span", { text: piece.description }), el("span", { class: "end", text: live?.class ? chanceText(live) || (isPale(live) ? "≈" : "") : isAnchored ? `⚓ ${word}${fails}` : word })));
-  }
-
-  #drawUnplaced(rows) {
-    clear(this.unplaced);
-    if (!rows.length) return;
-    this.unplaced.append(el("h2", { class: "group-head", text: t("Not on the plan ({n})", { n: rows.length }) }));
-    if (this.canEdit()) this.unplaced.append(el("p", { class: "hint", text: t("Drag one onto the plan, or press Enter to put it in the middle.") }));
-    this.unplaced.append(el("ul", { class: "rows" }, rows.slice(0, MOST).map((one) => this.#unplacedRow(one))));
-  }
-
-  #unplacedRow(one) {
-    const place = (at) => this.edits.place(one.row, at);
-    const button = el("button", { type: "button", class: "quiet row draggable", disabled: !this.canEdit(), dataset: { row: one.row } }, el("b", { text: one.item }), el("span", { text: one.description }));
-    if (this.canEdit()) this.startDrag(button, () => this.#sizeOf(one.row), place);
-    return el("li", null, button);
-  }
-
-  #sizeOf(row) {
-    const type = this.model.types.find((one) => nameKey(one.type) === nameKey(this.model.text("Items", row, "type")));
-    const size = (field) => this.model.length("Items", row, field) ?? type?.[field] ?? null;
-    const breadth = size("breadth") ?? 0.4;
-    return { breadth, width: size("width") ?? breadth, angle: this.model.length("Items", row, "angle_deg") ?? 0 };
+  /** The first rows of a list, and how many more there are. */
+  rows(all, row) {
+    const rest = all.length - MOST;
+    return html`<ul class="rows">${all.slice(0, MOST).map(row)}${rest > 0 ? html`<li>${tn("{n:,} more", "{n:,} more", rest)}</li>` : nothing}</ul>`;
   }
 }
 
-export class TypeList {
-  /** @param {{model, edits, startDrag}} parts */
+export class PieceLists extends List {
+  /** @param {{model, store, scene, edits, canEdit, startDrag, goTo}} parts */
   constructor(parts) {
-    Object.assign(this, parts);
-    this.search = searchField(t("Find a type"), () => this.draw());
-    this.list = el("ul", { class: "rows types" });
-    this.node = el("section", { class: "plan-section", "aria-label": t("Add") }, this.search, el("p", { class: "hint", text: t("Drag a type onto the plan, or press Enter to put it in the middle. Each becomes a row of the sheet.") }), this.list);
+    super(parts, t("Pieces"), t("Find a piece"));
+    this.startDrag(this.node, ({ dataset: { row } }) => ({ size: () => this.model.sizeOf(Number(row)), drop: (at) => this.edits.place(Number(row), at) }));
   }
 
-  async draw() {
-    const types = await this.model.loadTypes().catch(() => []);
-    const words = wordsOf(this.search);
+  content(words) {
+    const { model, scene: { pieces } } = this;
+    const found = (all) => all.filter((one) => matches(words, one.item, one.description)).map((piece) => ({ piece, shown: pieces.classOf(piece) }));
+    const placed = found(pieces.order().map((row) => model.pieces.get(row))).sort((a, b) => (b.shown.chance ?? -1) - (a.shown.chance ?? -1));
+    const groups = [...CLASSES, ""].map((key) => [key, placed.filter((one) => one.shown.key === key)]).filter(([, all]) => all.length);
+    return html`<div class="unplaced">${this.#unplaced(found(model.plan?.unplaced ?? []))}</div><div class="by-class">${groups.map(([key, all]) => this.#group(key, all))}</div>
+      ${placed.length ? nothing : html`<p class="muted">${t("No piece of this floor is on the plan.")}</p>`}`;
+  }
+
+  #group(key, all) {
+    const { sign, word, css } = describe(key);
+    return html`<div><h2 class="group-head"><span class="badge ${css}" aria-hidden="true">${sign}</span> ${word} (${all.length})</h2>${this.rows(all, ({ piece, shown }) => html`<li>
+      <button type="button" class="quiet row" aria-pressed=${this.scene.pieces.selected.has(piece.row)} data-row=${piece.row} @click=${() => this.goTo("Items", piece.row, [piece.x, piece.y])}>
+        <b>${piece.item}</b><span>${piece.description}</span><span class="end">${shown.text}</span></button></li>`)}</div>`;
+  }
+
+  /** The pieces that are not on the plan: by room, the worst first. */
+  #unplaced(all) {
+    if (!all.length) return nothing;
+    const rank = ({ shown: { key, chance } }) => (key ? CLASSES.indexOf(key) : CLASSES.length) - (chance ?? 0);
+    const rooms = Map.groupBy(all.sort((a, b) => rank(a) - rank(b)), ({ piece }) => this.model.text("Items", piece.row, "room"));
+    return html`<h2 class="group-head">${t("Not on the plan ({n})", { n: all.length })}</h2>
+      ${this.canEdit() ? html`<p class="hint">${t("Drag one onto the plan, or press Enter to put it in the middle.")}</p>` : nothing}
+      ${[...rooms].map(([room, own]) => html`${this.#room(room, this.model.roomNamed(room), rooms.size)}${this.rows(own, (one) => this.#unplacedRow(one))}`)}`;
+  }
+
+  #room(room, place, count) {
+    if (!place && count === 1) return nothing;
+    return html`<div class="room-head"><h3>${room || t("No room")}</h3>${place && this.canEdit() ? html`<button type="button" class="quiet"
+      title=${t("Place the pieces of this room along its walls, as a start")} @click=${() => this.edits.placeAlongWalls(place)}>${icon("walls")}${t("Place along the walls")}</button>` : nothing}</div>`;
+  }
+
+  #unplacedRow({ piece, shown: { key, text, live } }) {
+    const { sign, word } = describe(key);
+    const shown = html`<span class="badge ${key ? classStyle(live) : "class-none"}" title=${word}>${sign}</span><b>${piece.item}</b><span>${piece.description}</span><span class="end">${text}</span>`;
+    return html`<li>${this.canEdit() ? html`<button type="button" class="quiet row draggable" data-row=${piece.row}>${shown}</button>` : html`<div class="row">${shown}</div>`}</li>`;
+  }
+}
+
+export class TypeList extends List {
+  /** @param {{model, edits, startDrag}} parts */
+  constructor(parts) {
+    super(parts, t("Add"), t("Find a type"));
+    this.startDrag(this.node, ({ dataset: { type } }) => {
+      const { breadth, width } = this.model.types.find((one) => one.type === type);
+      const size = { breadth: breadth ?? 0.4, width: width ?? breadth ?? 0.4, angle: 0 };
+      return { size: () => size, drop: (at) => this.edits.add(type, at) };
+    });
+  }
+
+  content(words) {
+    const { types } = this.model;
+    if (!types.length) this.model.loadTypes().then((found) => found.length && this.draw()).catch(() => {});
     const found = types.filter((one) => matches(words, one.type));
-    clear(this.list).append(...found.slice(0, MOST).map((one) => this.#row(one)));
-    if (!found.length) this.list.append(el("li", { class: "muted", text: types.length ? t("No type has such a name.") : t("The catalogue of this workbook is empty.") }));
+    return html`<p class="hint">${t("Drag a type onto the plan, or press Enter to put it in the middle. Each becomes a row of the sheet.")}</p>
+      ${found.length ? this.rows(found, (one) => this.#row(one)) : html`<p class="muted">${types.length ? t("No type has such a name.") : t("The catalogue of this workbook is empty.")}</p>`}`;
   }
 
   #row(one) {
     const { unit, factor } = this.model.unit;
     const sizes = [one.breadth, one.width, one.height].map((size) => (size ? shownLength(size, { unit: "", factor }).trim() : "?")).join(" × ");
-    const button = el("button", { type: "button", class: "quiet row draggable", dataset: { type: one.type } }, el("b", { text: one.type }), el("span", { class: "end", text: `${sizes} ${unit}` }));
-    const breadth = one.breadth ?? 0.4;
-    this.startDrag(button, () => ({ breadth, width: one.width ?? breadth, angle: 0 }), (at) => this.edits.add(one.type, at));
-    return el("li", null, button);
+    return html`<li><button type="button" class="quiet row draggable" data-type=${one.type}><b>${one.type}</b><span class="end">${sizes} ${unit}</span></button></li>`;
   }
 }
 
-export class RouteLists {
+export class RouteLists extends List {
   #all = false;
-  #isOpen = false;
 
   /** @param {{model, store, goTo}} parts */
   constructor(parts) {
-    Object.assign(this, parts);
-    this.node = el("section", { class: "plan-section", "aria-label": t("Routes") });
+    super(parts, t("Routes"));
   }
 
-  draw() {
-    const { model } = this;
-    const { routes } = model;
-    clear(this.node);
-    if (!routes) {
-      this.node.append(el("p", { class: "muted", text: t("Computing…") }));
-      return;
-    }
-    this.node.classList.toggle("old", model.routesOld);
-    this.node.setAttribute("aria-busy", String(model.routesOld));
-    if (routes.error) this.node.append(el("p", { class: "error-text", text: routes.error }));
+  content() {
+    const { routes, routesOld } = this.model;
+    if (!routes) return html`<p class="muted">${t("Computing…")}</p>`;
+    this.node.classList.toggle("old", routesOld);
+    this.node.setAttribute("aria-busy", String(routesOld));
+    const error = routes.error ? html`<p class="error-text">${routes.error}</p>` : nothing;
     if (!routes.routes.length && !routes.rooms.length) {
-      this.node.append(el("p", { class: "muted", text: t("The workbook has no routes. Draw rooms, doors and exits, then segments between them: their states are shown here.") }), ...this.#drawn());
-      return;
+      return html`${error}<p class="muted">${t("The workbook has no routes. Draw rooms, doors and exits, then ways between them: their states are shown here.")}</p>${this.#drawn()}`;
     }
-    this.node.append(this.#switch(), ...this.#group(t("Routes"), this.#routes()), ...this.#group(t("Rooms"), this.#rooms()), ...this.#drawn(), ...this.#remarks(routes));
+    return html`${error}<label class="check"><input type="checkbox" @change=${({ target }) => ((this.#all = target.checked), this.draw())}>${t("Of all floors")}</label>
+      ${this.#group(t("Routes"), this.#routes())}${this.#group(t("Rooms"), this.#rooms())}${this.#drawn()}${this.#remarks(routes)}`;
   }
 
-  /** All places and segments of the floor, so that each can be reached by keys. */
+  /** All rooms, exits and ways of the floor, so that each can be reached by keys. */
   #drawn() {
-    const { places, segments } = this.model;
-    const row = (name, about, run) => el("li", null, el("button", { type: "button", class: "quiet row", on: { click: run } }, el("b", { text: name }), el("span", { class: "end", text: about })));
+    const { model } = this;
     const rows = [
-      ...[...places.values()].map((one) => row(one.place, this.model.text("Places", one.row, "kind"), () => this.goTo("Places", one.row))),
-      ...[...segments.values()].map((one) => row(`${one.route}, ${one.segment}`, `${one.from} – ${one.to}`, () => this.goTo("Routes", one.row))),
+      ...[...model.places.values()].map((one) => [one.place, model.text("Places", one.row, "kind"), "Places", one.row]),
+      ...[...model.segments.values()].map((one) => [`${one.route}, ${one.segment}`, `${one.from} – ${one.to}`, "Routes", one.row]),
     ];
-    if (!rows.length) return [];
-    const details = el("details", { open: this.#isOpen, on: { toggle: () => (this.#isOpen = details.open) } }, el("summary", { text: t("Places and segments of this floor ({n})", { n: rows.length }) }), el("ul", { class: "rows" }, rows));
-    return [details];
-  }
-
-  #switch() {
-    const box = el("input", { type: "checkbox", checked: this.#all });
-    box.addEventListener("change", () => ((this.#all = box.checked), this.draw()));
-    return el("label", { class: "check" }, box, t("Of all floors"));
+    if (!rows.length) return nothing;
+    return html`<details><summary>${t("Rooms, exits and ways of this floor ({n})", { n: rows.length })}</summary><ul class="rows">${rows.map(([name, about, sheet, row]) =>
+      html`<li><button type="button" class="quiet row" @click=${() => this.goTo(sheet, row)}><b>${name}</b><span class="end">${about}</span></button></li>`)}</ul></details>`;
   }
 
   #routes() {
-    const own = new Map();
-    for (const one of this.model.segments.values()) own.set(nameKey(one.route), [...(own.get(nameKey(one.route)) ?? []), one.row]);
+    const own = Map.groupBy(this.model.segments.values(), (one) => nameKey(one.route));
     return this.model.routes.routes.filter((one) => this.#all || own.has(nameKey(one.route)))
-      .map((one) => this.#row(one.route, one, () => this.goTo("Routes", own.get(nameKey(one.route)) ?? []), own.has(nameKey(one.route))));
+      .map((one) => [one.route, one, () => this.goTo("Routes", own.get(nameKey(one.route)).map(({ row }) => row)), own.has(nameKey(one.route))]);
   }
 
   #rooms() {
     return this.model.routes.rooms.filter((one) => this.#all || nameKey(one.floor) === nameKey(this.model.floor))
-      .map((one) => this.#row(one.room, one, () => this.goTo("Places", one.place_row), this.model.places.has(one.place_row)));
+      .map((one) => [one.room, one, () => this.goTo("Places", one.place_row), this.model.places.has(one.place_row)]);
   }
 
-  #group(title, rows) {
-    return rows.length ? [el("h2", { class: "group-head", text: `${title} (${rows.length})` }), el("ul", { class: "rows states" }, rows)] : [];
-  }
-
-  #row(name, state, run, isHere) {
-    const css = `state-${state.standing ? "standing" : state.state.replace("_", "-")}`;
-    return el("li", null, el("button", { type: "button", class: `quiet row ${css}`, disabled: !isHere, title: state.detail, on: { click: run } },
-      el("span", { class: "state-word", text: state.word }), el("b", { text: name }), el("span", { class: "detail", text: state.detail })));
+  /** The worst first. */
+  #group(title, all) {
+    const order = ["blocked", "doubtful", "not_known", "open"];
+    const rank = ([, { state, standing, chance }]) => order.indexOf(state) - (standing ? 1 : 0) - (chance ?? 0) / 2;
+    const rows = all.sort((a, b) => rank(a) - rank(b)).map(([name, state, run, isHere]) => html`<li>
+      <button type="button" class="quiet row state-${state.standing ? "standing" : state.state.replace("_", "-")}" ?disabled=${!isHere} title=${state.detail} @click=${run}>
+        <span class="state-word">${state.word}</span><b>${name}</b><span class="detail">${state.detail}</span></button></li>`);
+    return rows.length ? html`<h2 class="group-head">${title} (${rows.length})</h2><ul class="rows states">${rows}</ul>` : nothing;
   }
 
   #remarks({ remarks }) {
-    return remarks.length ? [el("details", null, el("summary", { text: t("About these states") }), remarks.map((text) => el("p", { class: "hint", text })))] : [];
+    return remarks.length ? html`<details><summary>${t("About these states")}</summary>${remarks.map((text) => html`<p class="hint">${text}</p>`)}</details>` : nothing;
   }
 }

@@ -1,12 +1,14 @@
 // One floor as the plan holds it: what the server answers, and until it does, what the edited cells say.
 
 import { get } from "./api.mjs";
-import { corners, moveRing, readOutline } from "./plan_geometry.mjs";
+import { corners, isInside, moveRing, readOutline } from "./plan_geometry.mjs";
 import { isFilled } from "./sheet.mjs";
 
 const ASK_MS = 40;
 const ROUTES_MS = 300;
 const UNKNOWN_SIZE = 0.4; // as the server draws a piece of unknown sizes [m]
+/** The width of a way or a door where none is given, as the routes assume [m]. */
+export const DOOR = 0.9;
 const KINDS = ["room", "corridor", "door", "stair", "exit"];
 const SIZES = ["breadth", "width", "height"];
 const ANCHORED = ["no", "yes", "partly", "unknown"];
@@ -24,6 +26,8 @@ export class PlanModel extends EventTarget {
   segments = new Map();
   types = [];
   isShown = false;
+  isRefitted = false; // whether the next answer is to be seen whole
+  doorWidths = new Map(); // of doors that no way leads through yet, by their rows [m]
   #book = "";
   #floor = null;
   #shownFloor = null;
@@ -88,6 +92,7 @@ export class PlanModel extends EventTarget {
     this.routes = null;
     this.types = [];
     this.#routesStamp = null;
+    this.doorWidths = new Map();
     this.#isStale = true;
     if (this.isShown) this.#ask();
     this.#askRoutesSoon(0);
@@ -141,7 +146,8 @@ export class PlanModel extends EventTarget {
     this.pieces = new Map(answer.pieces.map((one) => [one.row, one]));
     this.places = new Map(answer.places.map((one) => [one.row, one]));
     this.segments = new Map(answer.segments.map((one) => [one.row, one]));
-    if (isOther) this.#tell("floor");
+    if (isOther || this.isRefitted) this.#tell("floor");
+    this.isRefitted = false;
     this.#tell("plan");
   }
 
@@ -188,6 +194,39 @@ export class PlanModel extends EventTarget {
   stateOf(kind, row) {
     if (!this.routes) return undefined;
     return kind === "segment" ? this.routes.segments.find((one) => one.row === row) : this.routes.rooms.find((one) => one.place_row === row);
+  }
+
+  /** Whether a piece is anchored: yes, no, partly, unknown. */
+  anchored = (row) => this.#choice("Items", row, "anchored", ANCHORED) || "unknown";
+
+  /** The size of a piece by its cells and its type, also of one that is not on the plan [m, deg]. */
+  sizeOf(row) {
+    const type = this.types.find((one) => nameKey(one.type) === nameKey(this.text("Items", row, "type")));
+    const size = (field) => this.length("Items", row, field) ?? type?.[field] ?? null;
+    const breadth = size("breadth") ?? UNKNOWN_SIZE;
+    return { breadth, width: size("width") ?? breadth, angle: this.length("Items", row, "angle_deg") ?? 0 };
+  }
+
+  /** The outlined place that the Room of pieces means: by its name, also after the floor's, else the one in which its pieces stand. */
+  roomNamed(room) {
+    const name = nameKey(room);
+    const outlined = name ? [...this.places.values()].filter((one) => one.outline) : [];
+    const named = outlined.find(({ place }) => [name, nameKey(`${this.floor} ${room}`)].includes(nameKey(place)));
+    if (named || !outlined.length) return named;
+    const stand = [...this.pieces.values()].filter((one) => nameKey(this.text("Items", one.row, "room")) === name);
+    const counted = outlined.map((place) => [stand.filter(({ x, y }) => isInside([x, y], place.outline)).length, place]);
+    return counted.sort((a, b) => b[0] - a[0]).find(([n]) => n > stand.length / 2)?.[1];
+  }
+
+  /** The ways of this floor that begin or end at a place. */
+  waysAt({ place }) {
+    return [...this.segments.values()].filter((one) => [one.from, one.to].some((name) => nameKey(name) === nameKey(place)));
+  }
+
+  /** The width of a door or an exit: the least clear width of the ways through it [m]; null where it is not known. */
+  widthOf(place) {
+    const widths = this.waysAt(place).map((one) => this.length("Routes", one.row, "clear_width")).filter((one) => one !== null);
+    return widths.length ? Math.min(...widths) : this.doorWidths.get(place.row) ?? null;
   }
 
   // ---- what edited cells say before the server answers
@@ -248,7 +287,7 @@ export class PlanModel extends EventTarget {
     const width = w ?? old?.width ?? b ?? UNKNOWN_SIZE;
     const piece = {
       row, ...base, angle, breadth, width, height: size("height") ?? old?.height ?? null,
-      anchored: this.#choice("Items", row, "anchored", ANCHORED) || "unknown", quantity: old?.quantity ?? 1,
+      anchored: this.anchored(row), quantity: old?.quantity ?? 1,
       missing: SIZES.filter((field) => size(field) === null && (old?.missing.includes(field) ?? true)), fallen: [],
     };
     const isSame = old && old.breadth === piece.breadth && old.width === piece.width && old.height === piece.height;
@@ -284,7 +323,7 @@ export class PlanModel extends EventTarget {
       }
       const points = ends.every((one) => one && one.x !== null && one.y !== null) ? ends.map((one) => [one.x, one.y]) : [];
       const isSame = old && JSON.stringify(old.points) === JSON.stringify(points);
-      const width = this.length("Routes", row, "clear_width") ?? this.length("Routes", row, "required_width") ?? old?.width ?? 0.9;
+      const width = this.length("Routes", row, "clear_width") ?? this.length("Routes", row, "required_width") ?? old?.width ?? DOOR;
       this.segments.set(row, {
         row, route: this.text("Routes", row, "route"), segment: this.text("Routes", row, "segment"), points, width, from, to,
         outline: isSame && old.width === width ? old.outline : bandOf(points, width),

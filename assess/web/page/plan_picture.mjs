@@ -2,7 +2,7 @@
 
 import { send } from "./api.mjs";
 import { clear, el } from "./elements.mjs";
-import { direction, distance, fromPicture, onPicture, placePicture, roundTo, turnPoint } from "./plan_geometry.mjs";
+import { direction, distance, fromPicture, onPicture, placePicture, readNumber, roundTo, turnPoint } from "./plan_geometry.mjs";
 import { notice } from "./messages.mjs";
 import { number, t } from "./texts.mjs";
 import { whenSent } from "./watch.mjs";
@@ -72,6 +72,7 @@ export class PlacingTool {
     const placed = placePicture(this.points, length, this.known ?? a, at, ((turn % 360) + 360) % 360);
     this.edits.placePicture(placed);
     this.done();
+    this.model.isRefitted = true;
   }
 }
 
@@ -157,7 +158,7 @@ export class Picture {
       sessionStorage.setItem(KEPT, input.value);
       this.scene.drawPicture();
     });
-    return el("label", { class: "field" }, el("span", { class: "field-name", text: t("How strong it shows") }), input);
+    return el("label", { class: "field" }, el("span", { class: "field-name", text: t("Opacity") }), input);
   }
 
   #actions(picture) {
@@ -251,6 +252,3 @@ export class Picture {
     }
   }
 }
-
-/** A number as people type it, with a point or a comma. */
-export const readNumber = (text) => (text.trim() === "" ? NaN : Number(text.trim().replace(",", ".")));

@@ -2,13 +2,14 @@
 
 import { basisWords, chanceText, classStyle, describe, isPale } from "./classes.mjs";
 import { svg } from "./elements.mjs";
-import { turnPoint } from "./plan_geometry.mjs";
-import { number, t } from "./texts.mjs";
+import { boxOf, corners, turnPoint } from "./plan_geometry.mjs";
+import { number, percent, t } from "./texts.mjs";
 
 const LEAST_SIGN = 7; // font size [px]
 const MOST_SIGN = 15;
 const LETTER = 6.4; // width of a letter of a name [px]
 const NAME_HEIGHT = 12;
+const NAMED_FROM = 45; // pixels a metre from which names stand below pieces, too
 const UNKNOWN_PX = 9; // of the question marks beyond the ends
 
 /** Lengths in metres as the page shows them, in the unit of the workbook. */
@@ -39,6 +40,7 @@ export class PieceLayer {
       const parts = this.#nodes.get(piece.row) ?? this.#make(piece.row);
       this.#update(parts, piece);
     }
+    this.#nameBeside();
     this.#setRole(pieces.size > 0);
     if (!pieces.has(this.active)) this.active = this.order()[0] ?? 0;
     this.#setTabStops();
@@ -71,7 +73,7 @@ export class PieceLayer {
     const isSelected = this.selected.has(piece.row);
     const pose = this.#previews.get(piece.row) ?? piece;
     const label = this.label(piece);
-    const mark = [label, b, w, piece.missing, isSelected, shown.isPale, shown.isAnchored, pose.x, pose.y, pose.angle, this.scale].join("|");
+    const mark = [label, b, w, piece.missing, isSelected, classStyle(shown.live), shown.isAnchored, pose.x, pose.y, pose.angle, this.scale].join("|");
     if (parts.mark === mark) return;
     parts.mark = mark;
     const set = (node, values) => Object.entries(values).forEach(([name, value]) => node.setAttribute(name, value));
@@ -122,12 +124,29 @@ export class PieceLayer {
     const shown = isNamed ? (along > 90 ? along - 180 : along) : 0;
     parts.px.style.transform = `scale(var(--u)) rotate(${-shown}deg)`;
     parts.sign.style.fontSize = `${size.toFixed(1)}px`;
-    parts.name.style.display = isNamed || this.selected.has(piece.row) ? "" : "none";
+    parts.isNamed = isNamed || this.selected.has(piece.row);
+    parts.name.style.display = parts.isNamed ? "" : "none";
     const shift = isNamed ? (piece.item.length * LETTER) / 2 + 2 : 0;
     parts.sign.setAttribute("x", -shift);
     parts.name.setAttribute("x", isNamed ? size / 2 + 1 : 0);
     parts.name.setAttribute("y", isNamed ? 0 : Math.max(10, this.#reach(piece, parts.angle)) + 10);
     parts.name.classList.toggle("beside", !isNamed);
+  }
+
+  /** Zoomed in, names stand below pieces that have no room for them, where they cover neither a piece nor a name. */
+  #nameBeside() {
+    if (this.scale < NAMED_FROM) return;
+    const [k, pieces] = [this.scale, [...this.model.pieces.values()]];
+    const taken = pieces.map((one) => boxOf(corners(one).map(([x, y]) => [x * k, -y * k])));
+    for (const piece of pieces) {
+      const parts = this.#nodes.get(piece.row);
+      if (!parts || parts.isNamed) continue;
+      const [x, y, half] = [piece.x * k, -piece.y * k + Number(parts.name.getAttribute("y")), (piece.item.length * LETTER) / 2];
+      const own = [x - half, y - NAME_HEIGHT / 2, x + half, y + NAME_HEIGHT / 2];
+      if (taken.some((one) => own[0] < one[2] && one[0] < own[2] && own[1] < one[3] && one[1] < own[3])) continue;
+      taken.push(own);
+      parts.name.style.display = "";
+    }
   }
 
   /** Half the height of a piece on the screen. */
@@ -142,6 +161,7 @@ export class PieceLayer {
       const piece = this.model.pieces.get(row);
       if (piece) this.#fitText(parts, piece);
     }
+    this.#nameBeside();
   }
 
   // ---- while dragged
@@ -175,10 +195,13 @@ export class PieceLayer {
 
   // ---- classes and words
 
-  /** The class that is shown, and what is known of it. */
-  classOf(piece) {
-    const live = this.store.live.get(piece.row);
-    return { key: live?.class ?? "", chance: live?.chance ?? null, isPale: isPale(live), isAnchored: piece.anchored === "yes", word: live?.word ?? "", live };
+  /** The class of a piece and the text beside it in lists: its chance, or why it has no class. */
+  classOf({ row, anchored = this.model.anchored(row) }) {
+    const live = this.store.live.get(row);
+    const { class: key = "", chance = null, word = "" } = live ?? {};
+    const isAnchored = anchored === "yes";
+    const none = isAnchored ? `⚓ ${chance === null ? word : t("{chance} if the anchor fails", { chance: percent(chance) })}` : word;
+    return { key, chance, isAnchored, word, live, text: key ? chanceText(live) || (isPale(live) ? "≈" : "") : none };
   }
 
   /** What is said of a piece: name, what it is, class, position. */
@@ -222,6 +245,7 @@ export class PieceLayer {
       const [parts, piece] = [this.#nodes.get(row), this.model.pieces.get(row)];
       if (parts && piece) this.#update(parts, piece);
     }
+    this.#nameBeside();
     if (rows.length && this.model.pieces.has(rows[0])) this.activate(rows[0]);
     this.#raise(rows);
   }

@@ -2,7 +2,9 @@
 
 import { svg } from "./elements.mjs";
 import { PieceLayer } from "./plan_pieces.mjs";
-import { boxOf, moveRing, turnPoint } from "./plan_geometry.mjs";
+import { boxOf, direction, moveRing, turnPoint } from "./plan_geometry.mjs";
+import { DOOR } from "./plan_model.mjs";
+import { nearestWall, sidesOf } from "./plan_snap.mjs";
 import { number, t } from "./texts.mjs";
 
 const SIGNS = { open: "✓", doubtful: "≈", not_known: "?", blocked: "✕" };
@@ -12,6 +14,7 @@ const BAR_PX = 70; // least length of the scale bar
 const NAMED_FROM = 55; // pixels a metre from which points of routes show their names
 const TINY_TO = 18; // pixels a metre below which a piece is a fleck of its class
 const LETTER_PX = 6.2;
+const ON_WALL = 0.15; // distance from a wall up to which a door is one of it [m]
 const SIGN_PX = 46; // length of an open segment from which its sign is drawn
 const MARKS = {
   exit: "M-7 -3H0V-7L8 0L0 7V3H-7Z", stair: "M-7 6V2.5H-3.5V-1H0V-4.5H3.5V-8H7V6Z", door: "M-5 0A5 5 0 1 0 5 0A5 5 0 1 0 -5 0Z",
@@ -118,7 +121,9 @@ export class Scene {
   drawRoutes() {
     const { model } = this;
     if (!model.plan) return;
-    this.rooms.replaceChildren(...[...model.places.values()].filter((one) => one.outline).map((one) => this.#room(one)));
+    const rooms = [...model.places.values()].filter((one) => one.outline);
+    const walls = rooms.flatMap((one) => sidesOf(one.outline));
+    this.rooms.replaceChildren(...rooms.map((one) => this.#room(one)), ...[...model.places.values()].map((one) => this.#opening(one, walls)).filter(Boolean));
     const segments = this.showsRoutes ? [...model.segments.values()] : [];
     this.bands.replaceChildren(...segments.map((one) => this.#band(one)).filter(Boolean));
     const marks = this.showsRoutes ? [...model.places.values()].filter((one) => one.x !== null && one.y !== null) : [];
@@ -139,6 +144,16 @@ export class Scene {
     const state = this.model.stateOf("place", place.row);
     const classes = ["room", stateClass(state), this.#isSelected("Places", place.row) && "selected"].filter(Boolean).join(" ");
     return svg("g", { class: classes, "data-place": place.row }, this.#title(place.place, state), svg("path", { d: path(place.outline) }));
+  }
+
+  /** A door or an exit on a wall: a gap as wide as it. */
+  #opening(place, walls) {
+    const { x, y, kind } = place;
+    const wall = (kind === "door" || kind === "exit") && x !== null && y !== null && nearestWall([x, y], walls, ON_WALL);
+    if (!wall) return null;
+    const [half, jamb] = [(this.model.widthOf(place) ?? DOOR) / 2, 5 / this.viewport.scale];
+    return svg("g", { class: "opening", transform: `translate(${x} ${-y}) rotate(${-direction(wall.a, wall.b)})`, "aria-hidden": "true" },
+      svg("path", { class: "gap", d: `M${-half} 0H${half}` }), svg("path", { d: `M${-half} ${-jamb}V${jamb}M${half} ${-jamb}V${jamb}` }));
   }
 
   #band(segment) {
@@ -167,14 +182,16 @@ export class Scene {
     const classes = ["mark", `mark-${place.kind || "point"}`, stateClass(state), isSelected && "selected"].filter(Boolean).join(" ");
     const sign = state && svg("g", { class: "state-sign", "aria-hidden": "true" }, svg("circle", { r: 8 }), svg("text", { text: signOf(state) }));
     return svg("g", { class: classes, transform: `translate(${place.x} ${-place.y})`, "data-place": place.row }, this.#title(place.place, state),
-      svg("g", { class: "px" }, svg("circle", { class: "reach", r: 12 }), sign || svg("path", { d: MARKS[place.kind] ?? MARKS.corridor }), this.#isNamed(place, isSelected) && svg("text", { class: "place-name", y: 18, text: place.place })));
+      svg("g", { class: "px" }, svg("circle", { class: "reach", r: 12 }), sign || svg("path", { d: MARKS[place.kind] ?? MARKS.corridor }), this.#name(place, isSelected)));
   }
 
-  /** The name of a room is left out where it is wider than the room. */
-  #isNamed({ place, outline }, isSelected) {
-    if (!outline || isSelected) return true;
-    const [x0, , x1] = boxOf(outline);
-    return (x1 - x0) * this.viewport.scale >= place.length * LETTER_PX;
+  /** The name of a place; of a room or a corridor along it, and left out where there is no room for it. */
+  #name({ place, outline }, isSelected) {
+    const text = (props) => svg("text", { class: outline ? "place-name outlined" : "place-name", y: 18, text: place, ...props });
+    if (!outline) return text();
+    const [x0, y0, x1, y1] = boxOf(outline);
+    const fits = (metres) => metres * this.viewport.scale >= place.length * LETTER_PX;
+    return fits(x1 - x0) || isSelected ? text() : fits(y1 - y0) && text({ transform: "rotate(-90)" });
   }
 
   // ---- what pieces cover when they fall

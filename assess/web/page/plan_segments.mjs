@@ -1,4 +1,4 @@
-// The tool that draws segments of routes from place to place, and splits one where another begins or ends on it.
+// The tool that draws ways, the segments of routes, from place to place, and splits one where another begins or ends on it.
 
 import { ask } from "./messages.mjs";
 import { PointsTool } from "./plan_draft.mjs";
@@ -12,14 +12,14 @@ const MISSED_PX = 40; // up to which the pointer goes before what it missed is f
 
 const isPlaced = (one) => one.x !== null && one.y !== null;
 
-export class SegmentTool extends PointsTool {
-  name = "segment";
+export class WayTool extends PointsTool {
+  name = "way";
   route = "";
   #from = null;
   #missed = null;
 
   help() {
-    return t("Click a room, door, stair, exit or junction, then the next: each click adds a segment. A click on a segment splits it. Escape leaves.");
+    return t("Click a room, corridor, door, stair or exit, then the next: each click adds a way. A click on a way splits it. Escape leaves.");
   }
 
   leave() {
@@ -30,6 +30,7 @@ export class SegmentTool extends PointsTool {
   takeBack() {
     if (!this.#from) return false;
     this.leave();
+    this.isActive = true;
     return true;
   }
 
@@ -59,7 +60,7 @@ export class SegmentTool extends PointsTool {
     if (segment) this.#offerSplit(found);
     else if (place && isPlaced(place)) this.#connect(place);
     else {
-      const text = place ? t("{place} has no X and Y yet: fill them in first.", { place: place.place }) : t("Click a room, door, stair, exit or junction.");
+      const text = place ? t("{place} has no X and Y yet: fill them in first.", { place: place.place }) : t("Click a room, corridor, door, stair or exit.");
       this.#missed = { point, text };
       this.say(text);
     }
@@ -69,11 +70,11 @@ export class SegmentTool extends PointsTool {
     const from = this.#from;
     this.#from = place;
     this.say(t("From {place}", { place: place.place }));
-    if (from && from.row !== place.row) this.edits.addSegment(this.route || this.nextRoute(), from.place, place.place);
+    if (from && from.row !== place.row) this.edits.addSegment(this.route || this.nextRoute(), from, place);
   }
 
   async #offerSplit({ segment, foot, place }) {
-    const question = [t("Split {segment} here? It becomes two segments with a junction between them.", { segment: `${segment.route}, ${segment.segment}` }), this.#keptPieces(segment)];
+    const question = [t("Split {way} here? It becomes two ways with a junction between them.", { way: `${segment.route}, ${segment.segment}` }), this.#keptPieces(segment)];
     const room = place && isPlaced(place) ? [[place.place, "room"]] : [];
     const answer = await ask(question.filter(Boolean).join(" "), [[t("Split it here"), "split"], ...room, [t("Cancel"), null]]);
     this.viewport.svg.focus({ preventScroll: true });
@@ -104,7 +105,7 @@ export class SegmentTool extends PointsTool {
     if (this.#from) lines.push({ name: "drawn", points: [[this.#from.x, this.#from.y], to] });
     if (this.#missed && distance(this.#missed.point, point) * this.viewport.scale > MISSED_PX) this.#missed = null;
     const missed = this.#missed && { at: this.#missed.point, text: this.#missed.text };
-    const text = segment ? t("Split {segment}", { segment: segment.segment }) : place?.place;
+    const text = segment ? t("Split {way}", { way: segment.segment }) : place?.place;
     this.scene.sketch(lines, missed ? [missed] : end ? [{ at: to, text }] : []);
   }
 }

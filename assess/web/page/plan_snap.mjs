@@ -92,6 +92,12 @@ function crossing({ point, isVertical }, { a, d }) {
   return found;
 }
 
+/** The wall that is nearest to a point, with its foot on it: {point, off, ...line}; null beyond `tolerance`. */
+export function nearestWall(point, walls, tolerance) {
+  const found = walls.map((line) => footOn(point, line)).filter((one) => one && one.off <= tolerance).sort((a, b) => a.off - b.off)[0];
+  return found ? { ...found.line, point: found.point, off: found.off } : null;
+}
+
 function footOn(point, line) {
   const s = dot(less(point, line.a), line.d);
   if (s < 0 || s > line.length) return null;

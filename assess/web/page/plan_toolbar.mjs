@@ -1,12 +1,20 @@
-// The tools above the plan: floor, tools, snapping, what is shown, zoom, help.
+// The tools beside the plan, and above it: floor, what is shown, what the tool in use asks for; zoom and help on it.
 
 import { choose, clear, el } from "./elements.mjs";
 import { icon } from "./icons.mjs";
-import { t } from "./texts.mjs";
+import { readNumber } from "./plan_geometry.mjs";
+import { DOOR } from "./plan_model.mjs";
+import { number, t } from "./texts.mjs";
 
 const BUTTONS_UP_TO = 6; // floors; beyond that, or where the window is narrower, a list
 const WIDE = matchMedia("(min-width: 1200px)");
-const KINDS = 5;
+const WITH_WIDTH = ["door", "exit"];
+
+/** The tools with their names and keys. */
+export const listTools = () => [
+  ["select", t("Select"), "V"], ["measure", t("Measure"), "M"], ["room", t("Room"), "O"], ["corridor", t("Corridor"), "C"],
+  ["door", t("Door"), "D"], ["stair", t("Stair"), "S"], ["exit", t("Exit"), "E"], ["way", t("Way"), "W"],
+];
 
 export class Toolbar {
   /** @param {{model, store, scene, viewport, select, tools, currentTool, canEdit, setTool, setFloor, fit, help}} parts */
@@ -17,33 +25,34 @@ export class Toolbar {
     this.#buildShown();
     this.#buildView();
     WIDE.addEventListener("change", () => this.draw());
-    this.node = el("div", { class: "plan-toolbar", role: "toolbar", "aria-label": t("Tools of the plan") }, this.floors, this.toolGroup, this.options, this.shown);
+    this.node = el("div", { class: "plan-toolbar", role: "toolbar", "aria-label": t("Settings of the plan"), tabIndex: -1 }, this.floors, this.shown, this.options);
   }
 
   #buildTools() {
-    const tool = (name, label, key) => el("button", { type: "button", class: "tool", title: `${label} (${key})`, "aria-label": label, dataset: { tool: name }, on: { click: () => this.setTool(name) } }, icon(name === "place" ? "room" : name === "segment" ? "way" : name), el("span", { text: label }));
-    this.toolGroup = el("div", { class: "plan-group tools editing-only", role: "group", "aria-label": t("Tools") },
-      tool("select", t("Select"), "V"), tool("measure", t("Measure"), "M"), tool("place", t("Place"), "P"), tool("segment", t("Segment"), "S"));
-    this.options = el("div", { class: "plan-group options editing-only" });
+    const tool = ([name, label, key]) => el("button", { type: "button", class: "tool quiet", title: `${label} (${key})`, "aria-label": label, dataset: { tool: name }, on: { click: () => this.setTool(name) } }, icon(name), el("span", { text: label }));
+    this.toolGroup = el("div", { class: "plan-tools editing-only", role: "toolbar", "aria-orientation": "vertical", "aria-label": t("Tools") }, listTools().map(tool));
     this.snap = el("input", { type: "checkbox", checked: true });
     this.snap.addEventListener("change", () => (this.tools.select.snaps = this.snap.checked));
-    this.kind = el("select", { "aria-label": t("Kind of place") });
-    this.kind.addEventListener("change", () => {
-      this.tools.place.kindAt = this.kind.selectedIndex;
-      this.tools.place.leave();
-      this.tools.place.enter();
-    });
-    this.route = el("input", { class: "route-name", list: "plan-routes", autocomplete: "off", "aria-label": t("Route of new segments") });
-    this.route.addEventListener("input", () => (this.tools.segment.route = this.route.value.trim()));
+    this.width = el("input", { class: "door-width", inputMode: "decimal", autocomplete: "off", "aria-label": t("Width of the door or exit") });
+    this.width.addEventListener("input", () => this.#setWidth());
+    this.route = el("input", { class: "route-name", list: "plan-routes", autocomplete: "off", "aria-label": t("Route of new ways") });
+    this.route.addEventListener("input", () => (this.tools.way.route = this.route.value.trim()));
     this.routeList = el("datalist", { id: "plan-routes" });
-    this.placeOptions = el("label", { class: "inline" }, t("Kind"), this.kind);
-    this.routeOptions = el("label", { class: "inline" }, t("Route"), this.route, this.routeList);
-    const ofTool = el("div", { class: "tool-option" }, this.placeOptions, this.routeOptions); // one place for both, kept: the plan must not move
-    this.options.append(ofTool);
+    this.unit = el("span");
+    this.widthOption = el("label", { class: "inline", title: t("It becomes the clear width of the ways that are drawn through it.") }, t("Width"), this.width, this.unit);
+    this.routeOption = el("label", { class: "inline" }, t("Route"), this.route, this.routeList);
+    this.options = el("div", { class: "plan-group editing-only" }, this.widthOption, this.routeOption);
+  }
+
+  #setWidth() {
+    const metres = readNumber(this.width.value) * this.model.unit.factor;
+    const isWidth = metres > 0;
+    this.width.setAttribute("aria-invalid", String(!isWidth && this.width.value.trim() !== ""));
+    for (const name of WITH_WIDTH) this.tools[name].width = isWidth ? metres : null;
   }
 
   #buildShown() {
-    const falls = choose([["selected", t("of the selected")], ["all", t("of all")], ["none", t("of none")]], this.scene.falls);
+    const falls = choose([["selected", t("selected")], ["all", t("all")], ["none", t("none")]], this.scene.falls);
     falls.addEventListener("change", () => {
       this.scene.falls = falls.value;
       this.scene.drawFalls();
@@ -54,8 +63,8 @@ export class Toolbar {
       this.scene.drawRoutes();
     });
     const snap = el("label", { class: "check editing-only", title: t("Pieces snap to walls and to each other; Alt switches it off while dragging.") }, this.snap, t("Snap"));
-    this.shown = el("div", { class: "plan-group shown", role: "group", "aria-label": t("Settings of the plan") }, snap,
-      el("label", { class: "inline", title: t("The floor that a piece may cover when it falls") }, t("Falls"), falls), el("label", { class: "check" }, routes, t("Routes")));
+    this.shown = el("div", { class: "plan-group", role: "group", "aria-label": t("What is shown") }, snap,
+      el("label", { class: "inline", title: t("The floor that a piece may cover when it falls") }, t("Show fall zones:"), falls), el("label", { class: "check" }, routes, t("Show routes")));
   }
 
   #buildView() {
@@ -70,22 +79,18 @@ export class Toolbar {
   draw() {
     this.#drawFloors();
     const tool = this.currentTool();
-    for (const button of this.toolGroup.children) button.setAttribute("aria-pressed", String(button.dataset.tool === tool.name));
-    this.placeOptions.classList.toggle("unused", tool.name !== "place");
-    this.routeOptions.classList.toggle("unused", tool.name !== "segment");
-    if (tool.name === "place") this.#drawKinds();
-    if (tool.name === "segment") this.#drawRoutes(tool);
-    for (const name of ["place", "segment"]) {
-      const button = this.toolGroup.querySelector(`[data-tool="${name}"]`);
-      button.disabled = !this.store.sheet(name === "place" ? "Places" : "Routes")?.found;
+    for (const button of this.toolGroup.children) {
+      const { name } = tool;
+      button.setAttribute("aria-pressed", String(button.dataset.tool === name));
+      const sheet = { select: "Items", measure: "Items", way: "Routes" }[button.dataset.tool] ?? "Places";
+      button.disabled = !this.store.sheet(sheet)?.found;
     }
-  }
-
-  #drawKinds() {
-    const choices = this.store.sheet("Places")?.column("kind")?.choices ?? [];
-    if (this.kind.options.length === choices.length) return;
-    clear(this.kind).append(...choices.slice(0, KINDS).map((one) => el("option", { value: one, text: one })));
-    this.kind.selectedIndex = this.tools.place.kindAt;
+    this.widthOption.hidden = !WITH_WIDTH.includes(tool.name);
+    this.routeOption.hidden = tool.name !== "way";
+    const { unit, factor } = this.model.unit;
+    this.unit.textContent = unit;
+    this.width.placeholder = number(DOOR / factor, 1);
+    if (tool.name === "way") this.#drawRoutes(tool);
   }
 
   #drawRoutes(tool) {

@@ -3,7 +3,7 @@
 import { clear, el, svg } from "./elements.mjs";
 import { ask } from "./messages.mjs";
 import { Details } from "./plan_details.mjs";
-import { MeasureTool, PlaceTool } from "./plan_draft.mjs";
+import { MeasureTool, OutlineTool, PointTool } from "./plan_draft.mjs";
 import { PlanEdits } from "./plan_edits.mjs";
 import { boxOf } from "./plan_geometry.mjs";
 import { PlanKeys, listKeys } from "./plan_keys.mjs";
@@ -12,13 +12,15 @@ import { PlanModel, nameKey } from "./plan_model.mjs";
 import { Picture, PlacingTool } from "./plan_picture.mjs";
 import { PlanPointer } from "./plan_pointer.mjs";
 import { Scene } from "./plan_scene.mjs";
-import { SegmentTool } from "./plan_segments.mjs";
+import { WayTool } from "./plan_segments.mjs";
 import { SelectTool } from "./plan_select.mjs";
-import { dragOnto } from "./plan_drop.mjs";
+import { dragFrom } from "./plan_drop.mjs";
 import { Toolbar } from "./plan_toolbar.mjs";
 import { Viewport } from "./plan_viewport.mjs";
 import { t, tn } from "./texts.mjs";
 
+const KINDS = ["room", "corridor", "door", "stair", "exit"]; // as the workbook lists them; the first two have an outline
+const SWIPE_PX = 30;
 const EDITED_FROM = "(min-width: 900px)";
 const TABS = [["selected", () => t("Selected")], ["pieces", () => t("Pieces")], ["add", () => t("Add")], ["routes", () => t("Routes")], ["picture", () => t("Picture")]];
 
@@ -30,6 +32,7 @@ export function createView(root, store) {
 class PlanView {
   #tab = "pieces";
   #views = new Map(); // floors to what was seen of them
+  #follows = true; // whether something was selected elsewhere since the plan was shown
 
   constructor(root, store) {
     Object.assign(this, { root, store });
@@ -76,7 +79,8 @@ class PlanView {
     this.select = new SelectTool(parts);
     const done = () => this.setTool("select");
     const more = { ...parts, select: this.select, done };
-    this.tools = { select: this.select, measure: new MeasureTool(more), place: new PlaceTool(more), segment: new SegmentTool(more), placing: new PlacingTool(more) };
+    this.tools = { select: this.select, measure: new MeasureTool(more), way: new WayTool(more), placing: new PlacingTool(more) };
+    KINDS.forEach((name, kindAt) => (this.tools[name] = new (kindAt < 2 ? OutlineTool : PointTool)({ ...more, name, kindAt, hasWidth: name === "door" || name === "exit" })));
     this.tool = this.select;
     this.picture = new Picture({ ...more, tool: this.tools.placing, currentTool: () => this.tool, start: () => this.setTool("placing") });
     this.select.picture = this.picture;
@@ -89,8 +93,8 @@ class PlanView {
   #buildPanel() {
     const { model, store, scene, edits, canEdit } = this;
     const goTo = (sheet, rows, at) => this.#goTo(sheet, [rows].flat(), at);
-    const startDrag = (button, size, drop) => dragOnto(button, { view: this, size, drop });
-    this.details = new Details({ model, store, scene, edits, canEdit, keys: this.keys, remove: (rows) => this.remove(rows) });
+    const startDrag = (list, find) => dragFrom(list, this, find);
+    this.details = new Details({ model, store, scene, edits, canEdit, keys: this.keys, remove: (rows) => this.remove(rows), currentTool: () => this.tool });
     this.lists = new PieceLists({ model, store, scene, edits, canEdit, startDrag, goTo });
     this.types = new TypeList({ model, edits, startDrag });
     this.routes = new RouteLists({ model, store, goTo });
@@ -100,12 +104,23 @@ class PlanView {
     this.legend = el("div", { class: "plan-legend" });
     this.panel = el("aside", { class: "plan-panel", "aria-label": t("Lists of the plan") }, this.tabs, this.body, this.legend);
     this.tabs.addEventListener("keydown", (event) => this.#tabKey(event));
+    let from = 0; // of a swipe on the tabs
+    this.tabs.addEventListener("touchstart", ({ touches }) => (from = touches[0].clientY), { passive: true });
+    this.tabs.addEventListener("touchend", ({ changedTouches: [{ clientY }] }) => Math.abs(clientY - from) > SWIPE_PX && this.#raise(clientY < from));
+  }
+
+  /** On a phone the panel lies below the plan: only its tabs, or risen over it. */
+  #raise(isRaised) {
+    this.panel.classList.toggle("raised", isRaised);
+  }
+
+  #covered() {
+    return this.canEdit() ? 0 : this.drawing.getBoundingClientRect().bottom - this.panel.getBoundingClientRect().top;
   }
 
   #assemble() {
     this.root.classList.add("plan-view");
-    const hint = el("p", { class: "plan-reading", text: t("To edit, make the window at least 900 pixels wide; here the plan can be read.") });
-    this.root.append(this.toolbar.node, hint, el("div", { class: "plan-main" }, this.drawing, this.panel));
+    this.root.append(this.toolbar.node, el("div", { class: "plan-main" }, this.toolbar.toolGroup, this.drawing, this.panel));
     this.drawing.append(this.toolbar.view);
     this.#drawTabs();
   }
@@ -136,9 +151,17 @@ class PlanView {
   #drawTabs() {
     const shown = TABS.filter(([key]) => this.canEdit() || key !== "add");
     clear(this.tabs).append(...shown.map(([key, label]) => el("button", {
-      type: "button", role: "tab", text: label(), dataset: { panel: key }, "aria-controls": "plan-panel", "aria-selected": String(key === this.#tab), tabIndex: key === this.#tab ? 0 : -1, on: { click: () => this.#openTab(key) },
+      type: "button", role: "tab", text: label(), dataset: { panel: key }, "aria-controls": "plan-panel", "aria-selected": String(key === this.#tab), tabIndex: key === this.#tab ? 0 : -1, on: { click: () => this.#tapTab(key) },
     })));
+    this.panel.dataset.tab = this.#tab;
     for (const [key, one] of Object.entries(this.sections)) one.node.hidden = key !== this.#tab;
+  }
+
+  /** A tap on the tab that is open closes the panel of a phone. */
+  #tapTab(key) {
+    const isRaised = this.#tab !== key || !this.panel.classList.contains("raised");
+    this.#openTab(key);
+    this.#raise(isRaised);
   }
 
   #openTab(key) {
@@ -165,7 +188,8 @@ class PlanView {
   show() {
     this.isShown = true;
     this.model.loadTypes().catch(() => {});
-    this.#followFloor();
+    if (this.#follows) this.#followFloor();
+    this.#follows = false;
     this.model.show();
     if (this.model.plan) this.#draw();
   }
@@ -185,7 +209,7 @@ class PlanView {
 
   #onFloor() {
     const kept = this.#views.get(this.model.floor);
-    if (kept && !kept[3]) {
+    if (kept && !kept[3] && !this.model.isRefitted) {
       this.viewport.wanted = null;
       this.viewport.set(...kept.slice(0, 3));
     } else this.fit();
@@ -243,7 +267,7 @@ class PlanView {
   #drawLegend() {
     const states = this.model.routes && this.model.segments.size ? this.scene.legend() : [];
     clear(this.legend).append(
-      el("p", null, el("span", { class: "key-breadth" }), t("thick sides: Breadth, the way it topples"), " · ⚓ ", t("anchored")),
+      el("p", null, el("span", { class: "key-breadth" }), t("A piece topples in the direction of its thick sides."), " ⚓ ", t("anchored")),
       states.length ? el("ul", { class: "key-states" }, states.map(({ css, sign, word }) => el("li", { class: css }, el("span", { class: "state-dot", "aria-hidden": "true", text: sign }), word))) : "");
   }
 
@@ -255,7 +279,7 @@ class PlanView {
   }
 
   #selected(source) {
-    if (source !== "plan" && this.isShown) this.#followFloor();
+    if (source !== "plan" && !this.isShown) this.#follows = true;
     if (!this.model.plan) return;
     const rows = this.#ownRows();
     this.scene.pieces.select(rows);
@@ -263,7 +287,13 @@ class PlanView {
     this.scene.drawRoutes();
     this.select.showHandles();
     const { selection } = this.store;
-    if (source === "plan" && this.isShown && (rows.length || (selection.row && selection.sheet !== "Items"))) this.#openTab("selected");
+    if (source === "plan" && this.isShown) {
+      const hasAny = rows.length || (selection.row && selection.sheet !== "Items");
+      if (hasAny) this.#openTab("selected");
+      this.#raise(Boolean(hasAny));
+      const piece = this.model.pieces.get(rows[0]);
+      if (piece && !this.canEdit()) this.viewport.reveal([piece.x, piece.y], this.#covered());
+    }
     if (this.isShown) this.sections[this.#tab].draw();
     if (source === "plan" && rows.length > 1) this.say(tn("{n:,} piece selected", "{n:,} pieces selected", rows.length));
   }
@@ -290,7 +320,7 @@ class PlanView {
     const place = sheet === "Places" ? this.model.places.get(rows[0]) : null;
     const ends = sheet === "Routes" ? this.model.segments.get(rows[0])?.points : null;
     const to = at ?? (place?.x !== null && place ? [place.x, place.y] : ends?.[0]);
-    if (to) this.viewport.reveal(to);
+    if (to) this.viewport.reveal(to, this.#covered());
   }
 
   // ---- actions
@@ -302,10 +332,12 @@ class PlanView {
       this.tool = tool;
       old.leave?.();
       this.line.textContent = "";
+      if (name === "way" || tool.kindAt !== undefined) this.edits.select("Places", []); // the panel is of what is drawn
       tool.enter?.();
       this.svg.classList.toggle("drawing", name !== "select");
       if (name === "placing") this.#openTab("picture");
       if (name !== "select") this.svg.focus({ preventScroll: true });
+      this.sections?.[this.#tab].draw();
     }
     this.toolbar?.draw();
   }
@@ -316,8 +348,8 @@ class PlanView {
       return;
     }
     const names = rows.length === 1 ? this.model.pieces.get(rows[0]).item : tn("{n:,} piece", "{n:,} pieces", rows.length);
-    const question = t("Take {names} off the plan, or delete from the workbook? Undo brings everything back.", { names });
-    const answer = await ask(question, [[t("Take off the plan"), "off"], [t("Delete the row"), "row"], [t("Cancel"), null]]);
+    const question = t("Remove {names} from the plan, or delete from the workbook? Undo brings everything back.", { names });
+    const answer = await ask(question, [[t("Remove from the plan"), "off"], [t("Delete the row"), "row"], [t("Cancel"), null]]);
     if (answer === "off") this.edits.takeOff(rows);
     if (answer === "row") this.edits.deleteRows("Items", rows);
     if (answer) this.svg.focus({ preventScroll: true });

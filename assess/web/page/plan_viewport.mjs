@@ -66,9 +66,10 @@ export class Viewport extends EventTarget {
     this.set(this.scale, this.left + dx, this.top + dy);
   }
 
-  /** Bring a point of the floor into view, if it is not. */
-  reveal([x, y]) {
-    const [w, h] = this.size;
+  /** Bring a point of the floor into view, if it is not; of the height so much is covered at the bottom [px]. */
+  reveal([x, y], covered = 0) {
+    const [w, whole] = this.size;
+    const h = whole - covered;
     const [px, py] = this.toScreen([x, y]);
     const margin = Math.min(60, w / 6);
     const dx = px < margin ? margin - px : px > w - margin ? w - margin - px : 0;
