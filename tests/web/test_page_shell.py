@@ -315,7 +315,7 @@ def drop(page, name, data):
 @browsing
 def test_a_workbook_and_the_files_that_it_names_are_dropped_in(page, served_here, example):
     found = page(served_here())
-    expect(found.get_by_role("heading", name="Open a workbook")).to_be_visible()
+    expect(found.get_by_role("button", name="Open a file")).to_be_visible()
     drop(found, "old.xls", b"old")
     expect(found.get_by_role("alert").filter(has_text="old.xls cannot be opened")).to_contain_text("LibreOffice")
     drop(found, "broken.xlsx", b"no workbook")
@@ -345,7 +345,7 @@ def test_a_workbook_and_the_files_that_it_names_are_dropped_in(page, served_here
 @browsing
 def test_a_held_workbook_asks_before_it_is_left(page, served_here, office, tmp_path):
     found = page(served_here())
-    expect(found.get_by_role("heading", name="Open a workbook")).to_be_visible()
+    expect(found.get_by_role("button", name="Open a file")).to_be_visible()
     drop(found, "mine.xlsx", office.read_bytes())
     expect(found.locator(STATE)).to_have_text("No changes since the last download")
     edit(found, "Items", 2, 3, "Attic")
