@@ -30,6 +30,9 @@ SETTLE = """async (patience) => {
         await Promise.race([late, new Promise((done) => store.addEventListener("state", done, { once: true }))]);
     }
     await Promise.race([late, store.refreshLive()]);
+    while (store.isSimulating) {
+        await Promise.race([late, new Promise((done) => store.addEventListener("live", done, { once: true }))]);
+    }
     clearTimeout(timer);
 }"""
 COPY = """([text, html]) => document.addEventListener("copy", (event) => {
@@ -91,7 +94,7 @@ class SheetPage:
         return self
 
     def settle(self):
-        """Wait until the server has all changes and the page all answers."""
+        """Wait until the server has all changes and the page all answers, every piece simulated."""
         self.page.evaluate(SETTLE, 1e3 * PATIENCE)
         return self
 

@@ -69,8 +69,8 @@ export function percent(chance) {
   return `${number(100 * chance - 10 ** -MOST_DECIMALS, MOST_DECIMALS)}${PERCENT}`;
 }
 
-/** Two chances as a range without signs of percent: "15 to 26". */
-export const percents = (low, high) => t("{low} to {high}", { low: number(Math.round(100 * low)), high: number(Math.round(100 * high)) });
+/** Two chances as a range without signs of percent, rounded outward: "15 to 26". */
+export const percents = (low, high) => t("{low} to {high}", { low: number(Math.floor(100 * low + 1e-9)), high: number(Math.ceil(100 * high - 1e-9)) });
 
 /** A size of a file: 12 kB, 3.4 MB. */
 export function bytes(count) {
