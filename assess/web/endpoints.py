@@ -204,7 +204,7 @@ def _describe_live(asked: Asked) -> Answer:
 
 
 def _evaluate(what: str, asked: Asked) -> Answer:
-    """Answer with what follows from the workbook by the formulas; what that takes is imported when it is asked for."""
+    """Answer with what follows from the workbook; what that takes is imported when it is asked for."""
     from assess.web.floor_plan import describe_catalogue, describe_plan, find_picture
     from assess.web.route_states import describe_routes
     from assess.web.what_if_answer import try_out
