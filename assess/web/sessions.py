@@ -72,6 +72,7 @@ class Session:
             self.drop_book(kept=book.folder)
             self.book, self.downloaded = book, book.version
             book.simulator.limit(self._hold_place, min(self.limits.job_seconds, SECONDS))
+            threading.Thread(target=_begin, args=(book,), name="assess-begin", daemon=True).start()
             if book.path is not None and self.folder.parent.name.startswith(PREFIX):
                 other = _find_other(self.folder, book.path)
                 note = json.dumps({"path": str(book.path.resolve()), "pid": self.server})
@@ -183,6 +184,14 @@ class Session:
             self.drop_book()
             if self.reading is not None:
                 self.reading.close()
+
+
+def _begin(book: "Book") -> None:
+    """Assess a workbook that was opened, and have it simulated, before a page asks for it."""
+    from assess.web.evaluation import evaluate
+
+    with suppress(AssessError, OSError):  # the page is told once it asks
+        evaluate(book.snapshot(), routes=False)
 
 
 def _find_other(session: Path, workbook: Path) -> int | None:
