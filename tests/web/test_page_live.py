@@ -56,6 +56,10 @@ def test_a_class_is_pale_until_its_piece_has_been_simulated_and_says_what_it_res
     expect(sheet.cell(CLASS, 4)).to_have_text(re.compile("low cannot rock"))
     expect(header.get_by_role("progressbar")).to_be_hidden()
     expect(header).to_have_attribute("title", re.compile("as simulated and as reports have them"))
+    sheet.page.get_by_role("button", name="Menu").click()
+    with sheet.page.expect_download():
+        sheet.page.get_by_role("link", name="Download a copy").click()
+    expect(sheet.page.get_by_role("region", name="Notices")).to_contain_text("Excel shows the class by the formula")
     sheet.page.locator("nav.tabs [data-tab=plan]").click()
     sheet.page.locator(".plan-panel [data-panel=pieces]").click()
     expect(sheet.page.locator(".plan-panel")).to_contain_text(re.compile(r"A1.*%\s\(\d+ to \d+\)", re.DOTALL))

@@ -7,6 +7,7 @@ import { jobs } from "./job.mjs";
 import { imports } from "./import_job.mjs";
 import { acceptDrops } from "./open_file.mjs";
 import { showFiles } from "./files_view.mjs";
+import { notice } from "./messages.mjs";
 import { Tabs } from "./tabs.mjs";
 import { language, languages, loadTexts, t, tn } from "./texts.mjs";
 import { themeSwitch } from "./theme.mjs";
@@ -115,6 +116,7 @@ class Frame {
 
   async #onDownload(event) {
     if (this.#store.waiting === 0) {
+      notice(t("In the downloaded workbook Excel shows the class by the formula. The simulated class is on this page and in the reports."), { key: "download" });
       setTimeout(() => this.watch.look(), 500); // the server knows then that it was downloaded
       return;
     }
