@@ -11,7 +11,7 @@ from assess.web.live import LiveView
 from assess.web.request_errors import RequestError
 from assess.workbook.lists import LETTERS, PLACES
 from tests.conftest import EXAMPLE
-from tests.web.opened import write_office
+from tests.web.opened import settle, write_office
 from tests.workbook.books import write_shared
 from tests.workbooks import ITEMS
 
@@ -86,9 +86,11 @@ def test_rows_and_edits_are_steps_of_one_history_and_each_step_back_is_exact(boo
 def test_what_the_page_is_told_lets_it_shift_its_own_rows(book):
     """Shifts in their order, then the cells of rows that came back; live values of all rows but where numbers moved."""
     live = LiveView()
+    settle(book)
     first = live.answer(book, None)
     assert change(book, "move", 2, 2, 5) == [["Items", 2, 2, 5]]
-    answer = live.answer(book, first["version"])
+    settle(book)
+    answer = live.answer(book, first["stamp"])
     assert [answer["items"]["row"], answer["gone"], answer["whole"]] == [[2, 3, 4], [], False]
     assert book.undo(book.version)["rows"] == [["Items", 3, 2, 2]]
     assert change(book, "delete", 3, 2) == [["Items", 3, -2, None]]
