@@ -147,7 +147,8 @@ def test_a_model_dropped_on_an_open_workbook_becomes_another(page, served_here, 
     drop(found, "house.ifc", house.read_bytes())
     asked.get_by_role("button", name="Read it", exact=True).click()
     shown = _see_list(found, house.name)
-    expect(found.get_by_role("link", name="Imported")).to_be_hidden()  # office.xlsx was not
+    expect(open_menu(found).get_by_role("link", name="Imported")).to_be_hidden()  # office.xlsx was not
+    found.keyboard.press("Escape")
     shown.get_by_role("button", name="Open the workbook").click()
     expect(found.get_by_role("heading", name="house.xlsx")).to_be_visible()
     expect(found.locator(".notice")).to_contain_text("choose Shaking in Building")

@@ -179,6 +179,7 @@ def test_language_and_colours_are_kept_and_percentages_stay_on_their_side_of_a_l
     assert server.client.get("/api/book").json()["language"] == "en"
     open_menu(found)
     found.get_by_label("Lingua della pagina").select_option("en")
+    expect(found.get_by_role("link", name="Sheet", exact=True)).to_be_visible()  # loaded again
     expect(open_menu(found).get_by_label("Colours")).to_have_value("dark")
 
 
