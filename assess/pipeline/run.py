@@ -188,9 +188,9 @@ def _compute(
 
 def build_results(
     assessment: Assessment, *, figures: bool = True, series_folder: "str | Path | None" = None,
-    progress: Progress = SILENT,
+    progress: Progress = SILENT, routes: RouteTables | None = None,
 ) -> Results:  # fmt: skip
-    """Return the tables of a run; parameters and errors are those of `run`."""
+    """Return the tables of a run; `routes` where they are known; other parameters and errors are those of `run`."""
     demands, is_temporary = list_demands(assessment), figures and series_folder is None
     if series_folder is not None:
         folder = Path(series_folder)
@@ -198,7 +198,8 @@ def build_results(
         folder = make_folder(Path(tempfile.gettempdir()), "assess-") if figures else NO_SERIES
 
     def build() -> Results:
-        results = build_rows(assessment, demands, folder, evaluate_route_tables(assessment, progress))
+        found = evaluate_route_tables(assessment, progress) if routes is None else routes
+        results = build_rows(assessment, demands, folder, found)
         schedule = build_schedule(
             results, assessment.inventory, lambda held: evaluate_route_tables(assessment, progress, held)
         )

@@ -212,6 +212,10 @@ def _evaluate(what: str, asked: Asked) -> Answer:
     snapshot, floor = asked.book.snapshot(), asked.query.get("floor")
     if what == "routes":
         return describe_routes(snapshot)
+    if what == "overview":
+        from assess.web.overview import describe_overview
+
+        return describe_overview(snapshot)
     if what == "plan":
         return describe_plan(snapshot, floor)
     if what == "catalogue":
@@ -285,7 +289,7 @@ TABLE: tuple[tuple[str, Mapping[str, Handler]], ...] = (
     ("GET", {
         "/api/book": _describe_book,
         "/api/state": _describe_state, "/api/download": _download, "/api/live": _describe_live,
-        **{f"/api/{one}": partial(_evaluate, one) for one in ("routes", "plan", "picture", "catalogue")},
+        **{f"/api/{one}": partial(_evaluate, one) for one in ("overview", "routes", "plan", "picture", "catalogue")},
         "/api/job": _describe_job, "/api/job/report": _find_report,
         "/api/job/file/{name:path}": lambda asked: _attach(
             asked.job.read_file(asked.query["name"]), "application/octet-stream", asked.query["name"]

@@ -60,12 +60,13 @@ def served_here(folders, monkeypatch):
 def page(browser):
     """Return a function that opens a page of a server: `page(served(path))`; it fails on errors in the console.
 
-    `page(server, width=390, height=844, locale="it-IT")`: other options of a Playwright context.
+    `page(server, width=390, height=844, locale="it-IT")`: other options of a Playwright context. `view` is what it
+    shows where a workbook is open; "" for the first view.
     """
     opened = []
     with ExitStack() as stack:
 
-        def open_page(server, *, width=1280, height=900, **options):
+        def open_page(server, *, width=1280, height=900, view="sheet", **options):
             context = browser.new_context(viewport={"width": width, "height": height}, **options)
             stack.callback(context.close)
             context.set_default_timeout(1e3 * PATIENCE)
@@ -85,6 +86,7 @@ def page(browser):
                 name, value = server.entered.headers["Cookie"].split("=", 1)
                 context.add_cookies([{"name": name, "value": value, "url": server.base}])
                 found.goto(f"{server.base}/")
+            found.evaluate("view => { location.hash = view; }", view)
             return found
 
         yield open_page

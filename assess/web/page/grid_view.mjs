@@ -111,6 +111,7 @@ class GridView {
     addEventListener("keydown", (event) => this.#globalKey(event));
     this.#allowEditing();
     if (store.book) this.#opened();
+    if (store.toReveal) this.reveal(store.toReveal);
   }
 
   #allowEditing() {
@@ -265,6 +266,7 @@ class GridView {
   /** Show a cell; once the tab is shown, where it is not yet. */
   reveal(cell) {
     const [sheet, row, at] = cell;
+    this.store.toReveal = null;
     this.#waiting = { sheet, row, at, takesFocus: true };
     if (this.#isShown) this.#goToWaiting();
   }

@@ -25,6 +25,7 @@ class Store extends EventTarget {
   counts = {};
   floors = [];
   liveError = "";
+  toReveal = null;
   selection = { sheet: "Items", row: 0, at: 0, rows: [] };
   #sheets = new Map();
   #byCell = new Map();
@@ -441,8 +442,9 @@ class Store extends EventTarget {
     this.dispatchEvent(new CustomEvent("selection", { detail: { source } }));
   }
 
-  /** Show a cell in the grid. */
+  /** Show a cell in the grid, which may not be made yet: it looks at `toReveal` then. */
   reveal(cell) {
+    this.toReveal = cell;
     this.#tell("reveal", cell);
   }
 

@@ -7,6 +7,7 @@ import { t } from "./texts.mjs";
 
 /** Key, which is its icon too, label and module of every tab; each module exports createView(root, store) -> {show, hide}. */
 const TABS = [
+  ["overview", () => t("Overview"), () => import("./overview_view.mjs")],
   ["sheet", () => t("Sheet"), () => import("./grid_view.mjs")],
   ["plan", () => t("Plan"), () => import("./plan_view.mjs")],
   ["what-if", () => t("What if"), () => import("./what_if_view.mjs")],

@@ -1,0 +1,65 @@
+"""The outcome of a building in one sentence: ``About 10 of 177 pieces fall; 3 of 20 ways out are blocked.``."""
+
+from collections import Counter
+from collections.abc import Mapping
+
+from assess.i18n import Text, fill, gettext as _, nfill, ngettext, number
+from assess.report import words
+from assess.report.counts import Counts
+from assess.route_results import RouteState, RouteTables
+
+FEW = 0.05
+"""Expected falls below which none is expected."""
+WHOLE = 10
+"""Expected falls from which they are rounded to whole ones."""
+_WAYS: Mapping[RouteState, tuple[Text, Text]] = {
+    RouteState.BLOCKED: (
+        nfill("{n:,} of {all:,} ways out is blocked", "{n:,} of {all:,} ways out are blocked", 0, all=0),
+        fill("the only way out is blocked"),
+    ),
+    RouteState.DOUBTFUL: (
+        nfill("{n:,} of {all:,} ways out is doubtful", "{n:,} of {all:,} ways out are doubtful", 0, all=0),
+        fill("the only way out is doubtful"),
+    ),
+    RouteState.NOT_KNOWN: (
+        nfill("{n:,} of {all:,} ways out is not known", "{n:,} of {all:,} ways out are not known", 0, all=0),
+        fill("it is not known whether the only way out is open"),
+    ),
+}
+"""What is said of ways out in a state that is not open, the worst first."""
+
+
+def say_outcome(total: Counts, routes: RouteTables) -> str:
+    """Return the sentence; "" where there is neither a piece nor a route."""
+    said = "; ".join([*_say_falls(total), *_say_ways(routes)])
+    return f"{said[0].upper()}{said[1:]}." if said else ""
+
+
+def _say_falls(total: Counts) -> list[str]:
+    """Return how many free-standing pieces fall; those that are not confirmed are counted apart."""
+    unconfirmed = ngettext("{n:,} unconfirmed piece could fall", "{n:,} unconfirmed pieces could fall",
+                           total.unconfirmed)  # fmt: skip
+    apart = [unconfirmed] if total.unconfirmed else []
+    if not total.free:
+        return apart
+    if total.expected < FEW:
+        none = ngettext("The {n:,} free-standing piece is not expected to fall",
+                        "None of {n:,} free-standing pieces is expected to fall", total.free)  # fmt: skip
+        return [none, *apart]
+    falls = number(total.expected, ",.0f" if total.expected >= WHOLE else ".1f")
+    said = ngettext("About {falls} of {n:,} free-standing piece falls",
+                    "About {falls} of {n:,} free-standing pieces fall", total.free, falls=falls)  # fmt: skip
+    if total.falls_low is None or total.falls_high is None:
+        return [said, *apart]
+    return [f"{said} ({words.say_span((round(total.falls_low), round(total.falls_high)))})", *apart]
+
+
+def _say_ways(routes: RouteTables) -> list[str]:
+    """Return how many ways out are blocked, or doubtful where none is, or that all are open."""
+    states, every = Counter(one.state for one in routes.routes), len(routes.routes)
+    for state, (some, only) in _WAYS.items():
+        if n := states[state]:
+            return [_(only) if every == 1 else ngettext(some.template, some.many, n, all=every)]
+    if not every:
+        return []
+    return [ngettext("the only way out is open", "all {n:,} ways out are open", every)]
