@@ -3,6 +3,8 @@
 import re
 import sys
 import threading
+from collections.abc import Sequence
+from dataclasses import fields, replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,6 +19,7 @@ from assess.errors import AssessError, InputError
 from assess.i18n import find_language
 
 if TYPE_CHECKING:
+    from assess.web.limits import Limits
     from assess.web.server import Place, Server
 
 ORDER = 2
@@ -62,6 +65,12 @@ def command(
         str | None,
         typer.Option(help="Header in which that proxy, and nobody else, names the user.", show_default=False),
     ] = None,
+    limit: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=VALUE", help="What sessions may take (docs/hosting.md); may be repeated.", show_default=False
+        ),
+    ] = None,
 ) -> None:
     """Open a workbook in the browser: sheets, plan, what if, simulation and reports.
 
@@ -71,10 +80,11 @@ def command(
     if missing := [name for name in PACKAGES if find_spec(name) is None]:
         raise AssessError(f"the page needs {', '.join(missing)}, which is not installed. {say_install('web')}")
     from assess.delivery.folders import private_folder
-    from assess.web.limits import PREFIX
+    from assess.web.limits import HOSTED, OWN, PREFIX
     from assess.web.server import Place, Server, bind
 
-    place = Place(host, port, tuple(allowed_host or ()), user_header or "", code)
+    limits = _change_limits(HOSTED if user_header else OWN, limit or ())
+    place = Place(host, port, tuple(allowed_host or ()), user_header or "", code, limits)
     _check_place(place, path)
     with bind(place) as listening, private_folder(PREFIX) as folder:
         server = Server(listening, place, folder, Path.cwd())
@@ -89,6 +99,23 @@ def command(
         say(f"Stopped. All changes are saved in {ending.saved}.", err=True)
     else:
         say("Stopped.", err=True)
+
+
+def _change_limits(limits: "Limits", texts: Sequence[str]) -> "Limits":
+    """Return limits with some changed; InputError for any that cannot be."""
+    names = {one.name: one.type for one in fields(limits)}
+    for text in texts:
+        name, _, value = text.partition("=")
+        try:
+            number = float(value)
+        except ValueError:
+            number = 0.0
+        is_count = names.get(name) is int
+        if name not in names or not number > 0 or (is_count and not number.is_integer()):
+            what = "a whole number above 0" if is_count else "a number above 0"
+            raise InputError(f"--limit {text!r}: expected NAME=VALUE, {what}, with a NAME of {', '.join(names)}.")
+        limits = replace(limits, **{name: int(number) if is_count else number})  # type: ignore[arg-type]
+    return limits
 
 
 def _check_place(place: "Place", path: Path | None) -> None:

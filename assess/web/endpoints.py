@@ -320,8 +320,7 @@ _REST = "{name:path}"
 
 def answer(session: Session, call: Call) -> Response:
     """Return the answer to a request, in the language that its user chose, else that of the workbook or browser."""
-    of_book = session.language or (session.book.language if session.book else "")
-    language = choose_language(call.chosen, of_book, call.accepted)
+    language = _choose(session, call)
     with speaking(load_catalogue(language)):
         try:
             handler, named = _find_handler(call)
@@ -331,10 +330,23 @@ def answer(session: Session, call: Call) -> Response:
             found = handler(replace(asked, body=_parse_body(asked.data)) if is_json else asked)
             response = found if isinstance(found, Response) else _to_json(found)
             return pack(response, {"accept-encoding": call.encoding})
+        except MemoryError:  # nothing can be relied upon any more
+            raise
         except Exception as error:
             if not isinstance(error, AssessError | OSError):
                 LOG.exception("a request failed")
             return _refuse(error)
+
+
+def refuse(session: Session, call: Call, error: Exception) -> Response:
+    """Return the answer to a request that could not be carried out, in the same language."""
+    with speaking(load_catalogue(_choose(session, call))):
+        return _refuse(error)
+
+
+def _choose(session: Session, call: Call) -> str:
+    of_book = session.language or (session.book.language if session.book else "")
+    return choose_language(call.chosen, of_book, call.accepted)
 
 
 def _find_handler(call: Call) -> tuple[Handler, Mapping[str, str]]:

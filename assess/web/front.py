@@ -19,10 +19,9 @@ from starlette.types import Receive, Scope, Send
 from assess.i18n import fill, load_catalogue, speaking
 from assess.web.assets import answer_asset, find_asset
 from assess.web.frames import Call, Reply
-from assess.web.guard import READING, SESSION, read_parts, skip_body
+from assess.web.guard import MOST_SKIPPED, READING, SESSION, read_parts, skip_body
 from assess.web.limits import MODELS, MOST, SMALL, Limits, check_room, check_size, find_room
 from assess.web.request_errors import (
-    BAD_REQUEST,
     NOT_FOUND,
     TIMEOUT,
     TOO_MANY,
@@ -33,7 +32,7 @@ from assess.web.request_errors import (
 )
 from assess.web.texts import COOKIE, choose_language
 from assess.web.users import User
-from assess.web.workers import WorkerGoneError
+from assess.web.workers import Link, WorkerGoneError, ask_own
 
 LOG = logging.getLogger("assess.web")
 API = "/api/"
@@ -91,10 +90,7 @@ class Front:
     async def _ask(self, user: User, call: Call) -> Reply:
         """Return the answer of the process of a session; one that ends meanwhile is started again, and asked again."""
         for _ in range(2):
-            async with user.starting:
-                link = user.link
-                if link is None or link.is_gone:
-                    link = user.link = await user.run(user.start, user.folder)
+            link = await self._wake(user)
             asked = asyncio.ensure_future(user.run(link.ask, call))
             seconds = self._limits.seconds
             done, _late = await asyncio.wait({asked}, timeout=seconds if seconds < float("inf") else None)
@@ -108,6 +104,16 @@ class Front:
         raise RequestError(
             fill("The program behind your workbook ended unexpectedly; memory may have run out."), UNAVAILABLE
         )
+
+    async def _wake(self, user: User) -> Link:
+        """Return the process of a session, which is started where there is none, and ready to answer."""
+        async with user.starting:
+            link = user.link
+            if link is None or link.is_gone:
+                link = user.link = await user.run(user.start, user.folder)
+                with suppress(WorkerGoneError):
+                    await user.run(ask_own, link, "hello")
+        return link
 
     # ------------------------------------------------------------ bodies
 
@@ -148,27 +154,30 @@ class _Body:
 
     async def read(self, request: Request) -> None:
         """Read it to its end, so that the browser gets to the answer; RequestError if it is too large."""
-        silence, length = self._limits.silence, request.headers.get("content-length", "0")  # not every request has it
-        try:
-            await self._check(int(length))
-            async for part in read_parts(request.receive, silence):
+        fault = await self._check(int(request.headers.get("content-length", "0")))  # not every request has it
+        async for part in read_parts(request.receive, self._limits.silence):
+            self._size += len(part)
+            fault = fault or await self._check(self._size)
+            if fault is None:
                 await self._take(part)
-            if self.path is not None:
-                await self._write(self.path)
-        except RequestError as error:
-            if error.status not in (BAD_REQUEST, TIMEOUT):
-                await skip_body(request.receive, silence, self._size)
-            raise
+            elif self._size > MOST_SKIPPED:
+                break
+        if fault is not None:
+            raise fault
+        if self.path is not None:
+            await self._write(self.path)
 
-    async def _check(self, size: int) -> None:
-        check_size(size, self._most)
-        if size > SMALL and self._room == float("inf"):
-            self._room = await self._user.run(find_room, self._user.folder, self._limits)
-        check_room(size, self._room, self._limits)
+    async def _check(self, size: int) -> RequestError | None:
+        try:
+            check_size(size, self._most)
+            if size > SMALL and self._room == float("inf"):
+                self._room = await self._user.run(find_room, self._user.folder, self._limits)
+            check_room(size, self._room, self._limits)
+        except RequestError as error:
+            return error
+        return None
 
     async def _take(self, part: bytes) -> None:
-        self._size += len(part)
-        await self._check(self._size)
         self.held += part
         if self._size > SMALL and self.path is None:
             self.path = self._user.folder / f"body-{secrets.token_hex(8)}"

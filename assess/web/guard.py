@@ -148,11 +148,9 @@ async def read_parts(receive: Receive, silence: float) -> AsyncIterator[bytes]:
         yield message.get("body", b"")
 
 
-async def skip_body(receive: Receive, silence: float, size: int = 0) -> None:
-    """Read what is sent and is refused: a browser that is still sending when the connection ends shows no answer.
-
-    `size`: bytes of it that have been read.
-    """
+async def skip_body(receive: Receive, silence: float) -> None:
+    """Read what is sent and is refused: a browser that is still sending when the connection ends shows no answer."""
+    size = 0
     with suppress(RequestError):
         async for part in read_parts(receive, silence):
             size += len(part)

@@ -16,14 +16,15 @@ from pathlib import Path
 from typing import Any
 
 from assess.errors import AssessError, PdfUnavailableError, WorkbookError
-from assess.i18n import gettext, load_catalogue, speaking
+from assess.i18n import fill, gettext, load_catalogue, speaking
+from assess.processes import limit_process
 from assess.progress import Progress, Report
 from assess.results import Results
 from assess.risk import RiskClass
 from assess.settings import Settings, count_processors
 from assess.web.request_errors import describe_problem
 
-ORDER, INPUT, OUT, SUMMARY = "job.json", "input", "out", "summary.json"
+ORDER, LIMITS, INPUT, OUT, SUMMARY = "job.json", "limits.json", "input", "out", "summary.json"
 PLAIN = frozenset(("json", "csv", "xlsx"))
 """Formats that need no series of figures."""
 SENT_EVERY = 0.1
@@ -53,13 +54,19 @@ def main() -> None:
     threading.Thread(target=end_with_server, name="assess-server", daemon=True).start()
     if hasattr(os, "nice"):
         os.nice(LOWER_PRIORITY)
-    order = json.loads((folder / ORDER).read_text(encoding="utf-8"))
+    order, limits = (json.loads((folder / name).read_text(encoding="utf-8")) for name in (ORDER, LIMITS))
+    limit_process(*limits)
     with speaking(load_catalogue(order["language"])):
         try:
             send({"state": "done", **assess_workbook(folder, order, send)})
         except AssessError as error:
             problems = list(map(describe_problem, error.problems if isinstance(error, WorkbookError) else ()))
             send({"state": "failed", "message": gettext(error.message), "problems": problems})
+        except MemoryError:
+            text = fill(
+                "The simulation needs more than {n:,.0f} MB of memory, which is the limit here.", n=limits[0] / 1e6
+            )
+            send({"state": "failed", "message": gettext(text), "problems": []})
         except OSError as error:
             send({"state": "failed", "message": error.strerror or type(error).__name__, "problems": []})
     os._exit(0)  # without waiting for anything that is still computed aside

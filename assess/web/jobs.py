@@ -5,6 +5,7 @@ import json
 import logging
 import secrets
 import shutil
+import signal
 import subprocess
 import threading
 import zipfile
@@ -22,7 +23,8 @@ from assess.processes import start_module
 from assess.report_formats import FILES
 from assess.settings import change_settings
 from assess.web.file_names import list_present
-from assess.web.job_process import INPUT, ORDER, OUT, SUMMARY
+from assess.web.job_process import INPUT, LIMITS, ORDER, OUT, SUMMARY
+from assess.web.limits import OWN, Limits
 from assess.web.request_errors import NOT_FOUND, UNUSABLE, RequestError
 from assess.web.slots import Slots
 from assess.workbook.records import find_place
@@ -56,7 +58,7 @@ BUSY = fill("Other simulations are running. Try again in some minutes.")
 class Job:
     """One simulation of one version of a workbook; InputError for a wrong option or workbook, or no free slot."""
 
-    def __init__(self, book: "Book", body: Mapping[str, Any], parent: Path, slots: Slots) -> None:
+    def __init__(self, book: "Book", body: Mapping[str, Any], parent: Path, slots: Slots, limits: Limits = OWN) -> None:
         self.id, self._lock = secrets.token_hex(8), threading.RLock()
         self._folder = parent / f"job-{self.id}"
         self._now: dict[str, Any] = {
@@ -69,6 +71,8 @@ class Job:
             self._folder.mkdir(mode=0o700)
             self._order, self._inventory = prepare(book, body, self._folder)
             Path(temporary).mkdir()
+            self._limits = limits
+            (self._folder / LIMITS).write_text(json.dumps([limits.memory, limits.job_seconds]), encoding="utf-8")
             variables = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), temporary)
             with (self._folder / ERRORS).open("wb") as errors:
                 self._process = start_module("assess.web.job_process", self._folder, errors=errors, variables=variables)
@@ -95,6 +99,10 @@ class Job:
                     last = message
                 elif self.is_running:
                     self._now.update(message)
+        if process.returncode == -getattr(signal, "SIGXCPU", 0) != 0:
+            n = self._limits.job_seconds
+            slow = fill("The simulation takes more than {n:,.0f} s of processor time, which is the limit here.", n=n)
+            last["message"] = gettext(slow)
         self._slot.release()
         with self._lock:
             if self.is_running:

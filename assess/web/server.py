@@ -16,9 +16,10 @@ from typing import Any
 import uvicorn
 
 from assess.errors import InputError
+from assess.web.connections import limit_silence
 from assess.web.front import Front
 from assess.web.guard import Guard
-from assess.web.limits import HOSTED, OWN
+from assess.web.limits import OWN, Limits
 from assess.web.users import ENTRANCE, Keys, User
 from assess.web.workers import Link, Process, WorkerGoneError, ask_own
 
@@ -37,7 +38,7 @@ class Place:
     """Where the server listens: at any free port for 0; and in which language, if not that of workbook or browser.
 
     `allowed` are names by which browsers reach it through a proxy, with a port where that is not the usual one;
-    `user_header` is the header in which the proxy names the user, blank on the own machine.
+    `user_header` is the header in which the proxy names the user, blank on the own machine; `limits` what all may take.
     """
 
     host: str = LOOPBACK
@@ -45,6 +46,7 @@ class Place:
     allowed: tuple[str, ...] = ()
     user_header: str = ""
     language: str = ""
+    limits: Limits = OWN
 
     @property
     def is_hosted(self) -> bool:
@@ -99,7 +101,7 @@ class Server:
     ) -> None:
         self._listening, self._place = listening, place
         self.port = int(listening.getsockname()[1])
-        limits = HOSTED if place.is_hosted else OWN
+        limits = place.limits
         order = {"home": "" if place.is_hosted else str(home), "limits": asdict(limits), "language": place.language,
                  "server": os.getpid()}  # fmt: skip
         self._keys = Keys(place.user_header, self.port, lambda: User(
@@ -112,7 +114,8 @@ class Server:
             hosts, schemes = list(place.allowed), ["http", "https"]
         guard = Guard(Front(limits), self._keys, hosts, schemes, limits.silence)
         config = uvicorn.Config(guard, access_log=False, log_config=None,
-                                log_level="critical", lifespan="off", ws="none", http="h11", loop="asyncio",
+                                log_level="critical", lifespan="off", ws="none", loop="asyncio",
+                                http=limit_silence(limits.silence),
                                 server_header=False, date_header=False, proxy_headers=False,
                                 timeout_graceful_shutdown=GRACE, timeout_keep_alive=30)  # fmt: skip
         self._uvicorn = _Uvicorn(config)

@@ -154,7 +154,7 @@ class Session:
                 raise RequestError(fill("No workbook is open."), NOT_FOUND)
             self.check_room(0)
             slots = Slots(self.folder.parent, "simulations", self.limits.simulations, BUSY)
-            new = Job(self.book, body, self.folder, slots)
+            new = Job(self.book, body, self.folder, slots, self.limits)
             if self.job is not None:
                 self.job.close()
             self.job = new

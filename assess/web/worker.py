@@ -22,11 +22,13 @@ from starlette.responses import Response
 
 from assess.delivery.deliver import saving
 from assess.errors import AssessError
-from assess.web.endpoints import answer
+from assess.i18n import fill
+from assess.processes import OUT_OF_MEMORY, limit_process
+from assess.web.endpoints import answer, refuse
 from assess.web.frames import Call, Reply, pack, read_frame, write_frame
 from assess.web.importing import find_free
 from assess.web.limits import Limits
-from assess.web.request_errors import BROKEN
+from assess.web.request_errors import BROKEN, UNUSABLE, RequestError
 from assess.web.sessions import Session
 
 if TYPE_CHECKING:
@@ -104,14 +106,19 @@ class Worker:
     def __init__(self, folder: Path, order: Mapping[str, Any]) -> None:
         home = Path(order["home"]) if order["home"] else None
         self.session = Session(folder, home, Limits(**order["limits"]), order["language"], order["server"])
+        self.is_out = False  # of memory: it has to be started again
         self._keeper = Keeper(self.session)
         self._keeper.start()
 
     def ask(self, call: Call) -> Reply:
         """Return the answer to a request."""
-        own = {"open": self._open, "end": self._end}.get(call.path.removeprefix(OWN))
+        own = {"hello": lambda _call: {}, "open": self._open, "end": self._end}.get(call.path.removeprefix(OWN))
         try:
             response = answer(self.session, call) if own is None else Response(json.dumps(own(call)))
+        except MemoryError:
+            most = self.session.limits.memory / 1e6
+            text = fill("It needs more than {most:,.0f} MB of memory, which is the limit here.", most=most)
+            response, self.is_out = refuse(self.session, call, RequestError(text, UNUSABLE)), True
         except Exception:
             LOG.exception("the process of a session failed")
             response = Response(status_code=BROKEN)
@@ -177,6 +184,7 @@ def main() -> None:
     first = read_frame(sys.stdin.buffer)
     if first is None:
         os._exit(0)
+    limit_process(first[0]["limits"]["memory"])
     worker = Worker(Path(sys.argv[1]), first[0])
 
     def work(header: dict[str, Any], data: bytes) -> None:
@@ -184,6 +192,8 @@ def main() -> None:
         reply = worker.ask(Call(**header, data=data))
         with lock, suppress(OSError):
             write_frame(output, *pack(reply, number))
+        if worker.is_out:
+            os._exit(OUT_OF_MEMORY)
 
     pool = ThreadPoolExecutor(THREADS, "assess-request")
     while (found := read_frame(sys.stdin.buffer)) is not None:
