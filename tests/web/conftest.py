@@ -25,6 +25,9 @@ def _end_simulations(monkeypatch):
         one.close()
 
 
+UNFOLDED = "try { localStorage['assess-folded'] ??= '[]' } catch { /* not of the page */ }"
+
+
 @pytest.fixture
 def folders(tmp_path):
     """Make the folders of servers: temporary files go to `tmp` of `tmp_path`, new workbooks to `home`."""
@@ -61,13 +64,16 @@ def page(browser):
     """Return a function that opens a page of a server: `page(served(path))`; it fails on errors in the console.
 
     `page(server, width=390, height=844, locale="it-IT")`: other options of a Playwright context. `view` is what it
-    shows where a workbook is open; "" for the first view.
+    shows where a workbook is open; "" for the first view. All groups of columns are shown, unless it `folds` some as
+    at first.
     """
     opened = []
     with ExitStack() as stack:
 
-        def open_page(server, *, width=1280, height=900, view="sheet", **options):
+        def open_page(server, *, width=1280, height=900, view="sheet", folds=False, **options):
             context = browser.new_context(viewport={"width": width, "height": height}, **options)
+            if not folds:
+                context.add_init_script(UNFOLDED)
             stack.callback(context.close)
             context.set_default_timeout(1e3 * PATIENCE)
             found = context.new_page()

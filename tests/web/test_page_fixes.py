@@ -20,6 +20,7 @@ def test_an_unknown_floor_and_slips_are_fixed_where_they_are_shown(page, served_
     fix = sheet.page.get_by_role("button", name="Add floor 2 at 6.6 m")
     sheet.select("Floor", 2).type("2", "<Enter>", "2", "<Enter>", "ground floor", "<Enter>").settle()
     expect(sheet.cell(CLASS, 2)).not_to_have_text(A_CLASS)
+    sheet.page.locator(".problems-button").click()
     listed = sheet.page.locator(".problems")
     listed.get_by_role("button", name="Add floor 2 at 6.6 m").click()
     for row in (2, 3):
@@ -37,6 +38,7 @@ def test_an_unknown_floor_and_slips_are_fixed_where_they_are_shown(page, served_
 def test_one_click_fixes_all_cells_of_one_kind(page, served_here, tmp_path):
     items = [{"item": f"A{n}", "floor": "1", "type": "Medicin cabinet"} for n in range(1, 4)]
     sheet = opened(page, served_here(write_office(tmp_path / "office.xlsx", items))).open("Items")
+    sheet.page.locator(".problems-button").click()
     sheet.page.locator(".problems").get_by_role("button", name="Use Medicine cabinet (all 3)").press("Enter")
     for row in (2, 3, 4):
         expect(sheet.cell(CLASS, row)).to_have_text(A_CLASS)

@@ -10,7 +10,10 @@ import { cellName, isFilled } from "./sheet.mjs";
 import { t } from "./texts.mjs";
 
 export const ROW_HEIGHT = 28;
-export const HEAD_HEIGHT = 46;
+const HEAD_HEIGHT = 46;
+const GROUP_HEIGHT = 24;
+const FOLDED = "assess-folded";
+const FOLDED_AT_FIRST = ["Details", "Working values"];
 const NUMBERS_WIDTH = 52;
 const MARGIN_ROWS = 6;
 const MARGIN_PX = 200;
@@ -37,11 +40,13 @@ export class Grid extends EventTarget {
     super();
     this.store = store;
     this.columns = [];
+    this.folded = new Set(JSON.parse(localStorage.getItem(FOLDED) ?? "null") ?? FOLDED_AT_FIRST);
+    this.groups = el("div", { class: "grid-groups", role: "group", "aria-label": t("Groups of columns") });
     this.head = el("div", { class: "grid-row grid-head", role: "row", "aria-rowindex": 1 });
     this.table = el("div", { class: "grid-table", role: "grid", id: "grid", "aria-multiselectable": "true" }, this.head);
     this.handle = el("div", { class: "grid-handle", title: t("Drag to fill") });
     this.frame = el("div", { class: "grid-frame", "aria-hidden": "true" });
-    this.box = el("div", { class: "grid-box" }, this.table, this.frame, this.handle);
+    this.box = el("div", { class: "grid-box" }, this.groups, this.table, this.frame, this.handle);
     this.selection = new Selection({
       rows: () => this.order?.length ?? 0,
       columns: () => this.columns.length,
@@ -83,10 +88,30 @@ export class Grid extends EventTarget {
     if (at >= 0) shown[at] = classColumn(shown[at]);
     else if (this.sheet.name === "Items") shown.splice(1, 0, classColumn());
     const isFrozen = (column) => (column.at === null ? isClass(column) : column.at < this.sheet.frozen);
-    this.columns = shown.map((column) => ({ ...column, isFrozen: isFrozen(column) }));
-    this.columns.sort((one, other) => other.isFrozen - one.isFrozen);
+    this.all = shown.map((column) => ({ ...column, isFrozen: isFrozen(column) }));
+    this.all.sort((one, other) => other.isFrozen - one.isFrozen);
+    this.columns = this.all.filter((column) => column.isFrozen || !this.folded.has(column.group));
     this.layOut();
     this.#drawHead();
+  }
+
+  /** Hide the columns of a group, or show them again; in this browser it stays so. */
+  fold(group, isFolded = !this.folded.has(group)) {
+    const { active } = this;
+    if (isFolded) this.folded.add(group);
+    else this.folded.delete(group);
+    localStorage.setItem(FOLDED, JSON.stringify([...this.folded]));
+    this.refreshColumns();
+    const c = this.columns.findIndex((column) => column.at === active?.column.at);
+    if (c >= 0) this.selection.set([active.r, c]);
+    else this.selection.keepInside();
+    this.draw();
+  }
+
+  /** The columns from one that is shown to another, with the folded ones between them; of whole rows all. */
+  span(c0, c1) {
+    const isAll = c0 === 0 && c1 === this.columns.length - 1;
+    return this.all.slice(this.all.indexOf(this.columns[c0]), isAll ? this.all.length : this.all.indexOf(this.columns[c1]) + 1);
   }
 
   #widthKey(column) {
@@ -122,18 +147,39 @@ export class Grid extends EventTarget {
     this.numbersWidth = this.isNarrow ? 0 : NUMBERS_WIDTH;
     let x = this.numbersWidth;
     this.frozenWidth = x;
-    for (const column of this.columns) {
-      column.x = x;
-      column.px = this.widthOf(column);
-      x += column.px;
+    this.bands = []; // the groups from the left: of a folded one a gap is left, in which its heading stands
+    for (const column of this.all) {
+      const isFolded = !column.isFrozen && this.folded.has(column.group);
+      const isNew = column.group && !column.isFrozen && this.bands.at(-1)?.group !== column.group;
+      if (isNew) this.bands.push({ group: column.group, heading: column.heading, x, px: 0, isFolded });
+      if (isFolded && !isNew) continue;
+      if (!isFolded) Object.assign(column, { x, px: this.widthOf(column) });
+      const px = isFolded ? 34 + CHARACTER * column.heading.length : column.px;
+      if (column.group && !column.isFrozen) this.bands.at(-1).px += px;
+      x += px;
       if (column.isFrozen) this.frozenWidth = x;
     }
     this.width = x;
+    this.headHeight = HEAD_HEIGHT + (this.bands.length ? GROUP_HEIGHT : 0);
+    this.box.style.setProperty("--groups", `${this.headHeight - HEAD_HEIGHT}px`);
     this.table.style.width = `${x}px`;
     this.box.classList.toggle("narrow", this.isNarrow);
     const isOther = this.drawnNarrow !== this.isNarrow;
     this.drawnNarrow = this.isNarrow;
     if (isOther && this.head.childElementCount) this.#drawHead();
+  }
+
+  #drawGroups() {
+    const corner = el("div", { class: "grid-groups-corner" });
+    corner.style.width = `${this.frozenWidth}px`;
+    clear(this.groups).append(corner, ...this.bands.map(({ group, heading, x, px, isFolded }) => {
+      const button = el("button", { type: "button", class: "grid-group", "aria-expanded": String(!isFolded), dataset: { group }, on: { click: () => this.fold(group) } }, icon(isFolded ? "right" : "down"), heading);
+      button.style.left = `${x}px`;
+      button.style.width = `${px}px`;
+      return button;
+    }));
+    this.groups.hidden = this.bands.length === 0;
+    this.groups.style.width = `${this.width}px`;
   }
 
   get height() {
@@ -159,6 +205,7 @@ export class Grid extends EventTarget {
   }
 
   #drawHead() {
+    this.#drawGroups();
     const corner = el("div", { class: "grid-cell grid-number frozen", role: "columnheader", "aria-colindex": 1, "aria-label": t("Row") });
     corner.hidden = this.isNarrow;
     corner.style.width = `${this.numbersWidth}px`;
@@ -182,7 +229,7 @@ export class Grid extends EventTarget {
   #window() {
     const { scrollTop, scrollLeft, clientHeight, clientWidth } = this.box;
     const first = Math.max(0, Math.floor(scrollTop / ROW_HEIGHT) - MARGIN_ROWS);
-    const last = Math.min(this.order.length, Math.ceil((scrollTop + clientHeight - HEAD_HEIGHT) / ROW_HEIGHT) + MARGIN_ROWS);
+    const last = Math.min(this.order.length, Math.ceil((scrollTop + clientHeight - this.headHeight) / ROW_HEIGHT) + MARGIN_ROWS);
     const inSight = (column) => column.isFrozen || (column.x + column.px > scrollLeft - MARGIN_PX && column.x < scrollLeft + clientWidth + MARGIN_PX);
     return { first, last, columns: this.columns.flatMap((column, c) => (inSight(column) ? [c] : [])) };
   }
@@ -194,8 +241,7 @@ export class Grid extends EventTarget {
     this.table.setAttribute("aria-colcount", this.columns.length + 1);
     const { first, last, columns } = this.#window();
     this.#makeRows(last - first);
-    const [r0, , r1] = this.selection.range;
-    for (let r = first; r < last; r++) this.#drawRow(this.#rows[r % this.#rows.length], r, columns, r >= r0 && r <= r1);
+    for (let r = first; r < last; r++) this.#drawRow(this.#rows[r % this.#rows.length], r, columns, this.selection.hasRow(r));
     for (const row of this.#rows) if (row.r < first || row.r >= last) this.#hide(row);
     this.#drawFrame();
     this.dispatchEvent(new Event("drawn"));
@@ -260,7 +306,7 @@ export class Grid extends EventTarget {
     }
     const states = `${c}|${isSelected}|${isActive}|${problem?.severity ?? ""}|${isComputed(column) || !this.canEdit}`;
     if (node.states !== states) this.#setStates(node, states, { c, isSelected, isActive, problem, column });
-    const title = problem ? problemText(problem) : "";
+    const title = problem ? problemText(problem) : css.startsWith(" ghost") ? t("From the Catalogue; typing replaces it.") : "";
     if (node.title !== title) node.title = title;
   }
 
@@ -281,7 +327,7 @@ export class Grid extends EventTarget {
     const shift = (column) => (column.isFrozen ? this.box.scrollLeft : 0);
     const left = first.x + shift(first);
     const right = Math.max(last.x + last.px + shift(last), left);
-    return { left, top: HEAD_HEIGHT + r * ROW_HEIGHT, width: right - left, height: (r1 - r + 1) * ROW_HEIGHT, isFrozen: first.isFrozen };
+    return { left, top: this.headHeight + r * ROW_HEIGHT, width: right - left, height: (r1 - r + 1) * ROW_HEIGHT, isFrozen: first.isFrozen };
   }
 
   #drawFrame() {
@@ -321,7 +367,7 @@ export class Grid extends EventTarget {
     const { box } = this;
     const top = r * ROW_HEIGHT;
     if (top < box.scrollTop) box.scrollTop = top;
-    else if (top + ROW_HEIGHT + HEAD_HEIGHT > box.scrollTop + box.clientHeight) box.scrollTop = top + ROW_HEIGHT + HEAD_HEIGHT - box.clientHeight;
+    else if (top + ROW_HEIGHT + this.headHeight > box.scrollTop + box.clientHeight) box.scrollTop = top + ROW_HEIGHT + this.headHeight - box.clientHeight;
     if (column.isFrozen) return;
     if (column.x < box.scrollLeft + this.frozenWidth) box.scrollLeft = column.x - this.frozenWidth;
     else if (column.x + column.px > box.scrollLeft + box.clientWidth) box.scrollLeft = Math.min(column.x - this.frozenWidth, column.x + column.px - box.clientWidth);
@@ -329,6 +375,8 @@ export class Grid extends EventTarget {
 
   /** Select a cell by its row of the sheet and its column, and scroll to it; false where a filter hides it. */
   goTo(row, at) {
+    const hidden = this.all.find((column) => column.at === at && !this.columns.includes(column));
+    if (hidden) this.fold(hidden.group, false);
     const c = Math.max(0, this.columns.findIndex((column) => column.at === at));
     let r = this.order.indexOf(row);
     if (r < 0 && !this.order.isPlain) {

@@ -1,7 +1,7 @@
 // What is done to the selected cells: clear, fill, copy, cut, paste, rows. Every action is one edit and one step of undo.
 
 import { readBlock, writeBlock } from "./clipboard.mjs";
-import { hasChoices, isComputed, showValue } from "./grid_cells.mjs";
+import { cellText, cellValue, hasChoices, isComputed, showValue } from "./grid_cells.mjs";
 import { continueSeries } from "./grid_fill.mjs";
 import { isFilled, nextName } from "./sheet.mjs";
 import { notice } from "./messages.mjs";
@@ -10,6 +10,9 @@ import { t, tn } from "./texts.mjs";
 const MOST_CELLS = 400_000;
 
 export class Actions {
+  /** Whether the next copy begins with the headers. */
+  withHeaders = false;
+
   constructor(grid, store, say) {
     Object.assign(this, { grid, store, say });
   }
@@ -22,47 +25,59 @@ export class Actions {
     return this.canEdit ? this.store.edit(edits, label) : Promise.resolve(false);
   }
 
-  /** The selected range, without the blank rows at the end where whole columns are selected. */
-  range() {
-    const [r0, c0, r1, c1] = this.grid.selection.range;
+  /** A range, the last selected one by default, without the blank rows at the end where whole columns are selected. */
+  range([r0, c0, r1, c1] = this.grid.selection.range) {
     const { order, sheet } = this.grid;
-    if (r0 > 0 || r1 < order.length - 1) return [r0, c0, r1, c1];
     let last = r1;
-    while (last > r0 && !sheet.isUsed(order.row(last))) last -= 1;
+    if (r0 === 0 && r1 === order.length - 1) while (last > r0 && !sheet.isUsed(order.row(last))) last -= 1;
     return [r0, c0, last, c1];
   }
 
-  /** Edits of a block of cells: `value(r, c)` for each that can be edited. */
-  #edits([r0, c0, r1, c1], value) {
-    const { sheet, order, columns } = this.grid;
+  get ranges() {
+    return this.grid.selection.ranges.map((range) => this.range(range));
+  }
+
+  #value(r, column) {
+    const { store, sheet, order } = this.grid;
+    return cellValue(store, sheet, order.row(r), column);
+  }
+
+  /** Edits of a block of cells: `value(r, column, i)` for each that can be edited, `columns` those of the range by default. */
+  #edits([r0, c0, r1, c1], value, columns = this.grid.span(c0, c1)) {
+    const { sheet, order } = this.grid;
     const edits = [];
     for (let r = r0; r <= r1; r++) {
       const row = order.rowOrFree(r);
       if (row === null) break;
-      for (let c = c0; c <= c1; c++) {
-        if (!columns[c] || isComputed(columns[c])) continue;
-        const next = value(r, c);
-        if (next !== undefined) edits.push([sheet.name, row, columns[c].at, next]);
+      for (const [i, column] of columns.entries()) {
+        const next = isComputed(column) ? undefined : value(r, column, i);
+        if (next !== undefined) edits.push([sheet.name, row, column.at, next]);
       }
     }
     return edits;
   }
 
+  #editAll(value, label, ranges = this.ranges) {
+    return this.edit(ranges.flatMap((range) => this.#edits(range, value)), label);
+  }
+
+  #blank = (r, column) => (isFilled(this.#value(r, column)) ? null : undefined);
+
   clear(label = t("clear")) {
-    const filled = (r, c) => (isFilled(this.grid.value(r, c)) ? null : undefined);
-    return this.edit(this.#edits(this.range(), filled), label);
+    return this.#editAll(this.#blank, label);
   }
 
   fillSelection(value) {
-    return this.edit(this.#edits(this.range(), () => value), t("fill"));
+    return this.#editAll(() => value, t("fill"));
   }
 
   /** Ctrl+D: the first selected row into those below; of one row, the row above into it. */
   fillDown() {
-    const [r0, c0, r1, c1] = this.range();
-    const from = r0 === r1 ? r0 - 1 : r0;
-    if (from < 0) return null;
-    return this.edit(this.#edits([from + 1, c0, r1, c1], (r, c) => this.grid.value(from, c)), t("fill"));
+    const edits = this.ranges.flatMap(([r0, c0, r1, c1]) => {
+      const from = r0 === r1 ? r0 - 1 : r0;
+      return from < 0 ? [] : this.#edits([from + 1, c0, r1, c1], (r, column) => this.#value(from, column));
+    });
+    return this.edit(edits, t("fill"));
   }
 
   fillRight() {
@@ -70,6 +85,25 @@ export class Actions {
     const from = c0 === c1 ? c0 - 1 : c0;
     if (from < 0) return null;
     return this.edit(this.#edits([r0, from + 1, r1, c1], (r) => this.grid.value(r, from)), t("fill"));
+  }
+
+  /** How many cells of the selection hold anything, and sum and average of its numbers; null where that is too much. */
+  summarise() {
+    const { ranges } = this;
+    if (ranges.reduce((sum, [r0, c0, r1, c1]) => sum + (r1 - r0 + 1) * (c1 - c0 + 1), 0) > MOST_CELLS) return null;
+    const found = { count: 0, numbers: 0, sum: 0 };
+    for (const [r0, c0, r1, c1] of ranges) {
+      for (let r = r0; r <= r1; r++) {
+        for (let c = c0; c <= c1; c++) {
+          const value = this.grid.value(r, c);
+          found.count += isFilled(value);
+          if (typeof value !== "number") continue;
+          found.numbers += 1;
+          found.sum += value;
+        }
+      }
+    }
+    return found;
   }
 
   /**
@@ -97,26 +131,29 @@ export class Actions {
       const list = d0 < c0 ? span(d0, c0 - 1).reverse() : span(c1 + 1, d1);
       for (const r of span(r0, r1)) along(span(c0, c1).map((c) => [r, c]), { back: d0 < c0, list: list.map((c) => [r, c]) }, columns[c0]);
     }
-    const edits = this.#edits(target, (r, c) => made.get(`${r},${c}`));
+    const edits = this.#edits(target, (r, column) => made.get(`${r},${columns.indexOf(column)}`), columns.slice(d0, d1 + 1));
     this.grid.selection.setRange([q0, d0], [q1, d1]);
     return this.edit(edits, t("fill"));
   }
 
   // ---- clipboard
 
-  copy(data) {
-    const [r0, c0, r1, c1] = this.range();
-    const { grid } = this;
-    if ((r1 - r0 + 1) * (c1 - c0 + 1) > MOST_CELLS) return false;
-    const values = [];
-    for (let r = r0; r <= r1; r++) {
-      values.push(Array.from({ length: c1 - c0 + 1 }, (_, i) => {
-        const column = grid.columns[c0 + i];
-        return isComputed(column) ? grid.text(r, c0 + i) : grid.value(r, c0 + i);
-      }));
+  /** Copy the selected ranges, several one below the other where they have the same columns, with the headers if asked for. */
+  copy(data, withHeaders = this.withHeaders) {
+    const { grid, ranges } = this;
+    const [[, c0, , c1]] = ranges;
+    if (ranges.some((one) => one[1] !== c0 || one[3] !== c1)) {
+      notice(t("Ranges of different columns cannot be copied together. Select one of them."), { kind: "error" });
+      return false;
     }
-    writeBlock(data, values, (value, i) => showValue(value, grid.columns[c0 + i]));
-    const n = values.length * (c1 - c0 + 1);
+    const columns = grid.span(c0, c1);
+    if (ranges.reduce((sum, [r0, , r1]) => sum + (r1 - r0 + 1), 0) * columns.length > MOST_CELLS) return false;
+    const values = withHeaders ? [columns.map(({ label, unit }) => (unit ? `${label} [${unit}]` : label))] : [];
+    for (const [r0, , r1] of ranges) {
+      for (let r = r0; r <= r1; r++) values.push(columns.map((column) => (isComputed(column) ? cellText(grid.store, grid.sheet, grid.order.row(r), column) : this.#value(r, column))));
+    }
+    writeBlock(data, values, (value, i) => showValue(value, columns[i]));
+    const n = values.length * columns.length;
     this.say(tn("{n:,} cell copied", "{n:,} cells copied", n));
     return true;
   }
@@ -125,35 +162,37 @@ export class Actions {
     if (this.copy(data) && this.canEdit) this.clear(t("cut"));
   }
 
-  /** Paste a block: repeated where the selection is a multiple of it, past the last row into free ones. */
+  /** Paste a block: repeated where the selection is a multiple of it, past the last row into free ones, also into folded columns. */
   paste(data) {
     const block = readBlock(data);
     if (!block.length || !this.canEdit) return null;
     const [r0, c0, r1, c1] = this.range();
+    const { all, columns: shown } = this.grid;
     const height = block.length;
     const width = Math.max(...block.map((row) => row.length));
-    const reach = (first, last, size) => ((last - first + 1) % size === 0 ? last : first + size - 1);
-    const end = [reach(r0, r1, height), reach(c0, c1, width)];
-    const value = (r, c) => {
-      const row = block[(r - r0) % height];
-      const one = row[(c - c0) % width] ?? null;
+    const selected = this.grid.span(c0, c1).length;
+    const first = all.indexOf(shown[c0]);
+    const columns = all.slice(first, first + (selected % width === 0 ? selected : width));
+    const last = (r1 - r0 + 1) % height === 0 ? r1 : r0 + height - 1;
+    const value = (r, _, i) => {
+      const one = block[(r - r0) % height][i % width] ?? null;
       return one === "" ? null : one;
     };
-    const edits = this.#edits([r0, c0, ...end], value);
-    this.#tellCut(r0, end);
+    const edits = this.#edits([r0, c0, last, c1], value, columns);
+    this.#tellCut(r0, last, first + width - all.length);
     const done = this.edit(edits, t("paste"));
     this.grid.order.extend();
-    this.grid.selection.setRange([r0, c0], [Math.min(end[0], this.grid.order.length - 1), Math.min(end[1], this.grid.columns.length - 1)]);
+    const end = shown.indexOf(columns.findLast((column) => shown.includes(column)));
+    this.grid.selection.setRange([r0, c0], [Math.min(last, this.grid.order.length - 1), end]);
     this.say(tn("{n:,} cell pasted", "{n:,} cells pasted", edits.length));
     return done;
   }
 
-  #tellCut(r0, [r1, c1]) {
-    const { order, columns } = this.grid;
+  #tellCut(r0, r1, over) {
+    const { order } = this.grid;
     let lost = 0;
     for (let r = r1; r >= r0 && order.rowOrFree(r) === null; r--) lost += 1;
     if (lost) notice(tn("{n:,} row does not fit into this sheet and was left out.", "{n:,} rows do not fit into this sheet and were left out.", lost), { kind: "error" });
-    const over = c1 + 1 - columns.length;
     if (over > 0) notice(tn("{n} column right of the last was left out.", "{n} columns right of the last were left out.", over), { kind: "error" });
   }
 
@@ -169,11 +208,60 @@ export class Actions {
     return this.grid.goTo(row, first?.at ?? 0);
   }
 
-  /** Clear the selected rows; none below moves up, so that references of formulas stay. */
+  /** Clear the selected rows; none below moves up. */
   clearRows() {
+    const last = this.grid.columns.length - 1;
+    return this.#editAll(this.#blank, t("clear rows"), this.ranges.map(([r0, , r1]) => [r0, 0, r1, last]));
+  }
+
+  /** The selected rows of the file from the top, as runs of first row and number of rows. */
+  runs() {
+    const { order } = this.grid;
+    const rows = new Set(this.ranges.flatMap(([r0, , r1]) => Array.from({ length: r1 - r0 + 1 }, (_, i) => order.row(r0 + i))));
+    const runs = [];
+    for (const row of [...rows].sort((a, b) => a - b)) {
+      if (runs.length && row === runs.at(-1)[0] + runs.at(-1)[1]) runs.at(-1)[1] += 1;
+      else runs.push([row, 1]);
+    }
+    return runs;
+  }
+
+  async #changeRows(change, first, count) {
+    const { grid } = this;
+    const [, c0, , c1] = grid.selection.range;
+    const isDone = this.canEdit && (await this.store.changeRows({ sheet: grid.sheet.name, ...change }));
+    if (!isDone || first === undefined) return isDone;
+    const r = Math.max(0, grid.order.indexOf(first));
+    grid.selection.setRange([r, c0], [r + count - 1, c1]);
+    grid.show(grid.selection.anchor);
+    return true;
+  }
+
+  /** As many blank rows as are selected, above or below them. */
+  insertRows(isBelow = false) {
     const [r0, , r1] = this.range();
-    const filled = (r, c) => (isFilled(this.grid.value(r, c)) ? null : undefined);
-    return this.edit(this.#edits([r0, 0, r1, this.grid.columns.length - 1], filled), t("clear rows"));
+    const { order } = this.grid;
+    const [at, count] = [isBelow ? order.row(r1) + 1 : order.row(r0), r1 - r0 + 1];
+    return this.#changeRows({ do: "insert", at, count }, at, count);
+  }
+
+  /** Delete the selected rows, from the bottom up; those below move up. */
+  async deleteRows() {
+    const runs = this.runs().filter(([row]) => row <= this.grid.sheet.lastRow);
+    const n = runs.reduce((sum, [, count]) => sum + count, 0);
+    const done = await Promise.all(runs.reverse().map(([at, count]) => this.#changeRows({ do: "delete", at, count })));
+    if (done.length === 1 && done[0]) this.store.offerUndo(tn("{n:,} row deleted.", "{n:,} rows deleted.", n));
+    return done.every(Boolean);
+  }
+
+  /** Move the selected rows to lie before a row, up (-1) or down (1) by one by default. */
+  moveRows(step, before) {
+    const { order, sheet } = this.grid;
+    const [[at, count], ...others] = this.runs();
+    if (others.length || !order.isPlain) return notice(t("Rows can be moved one block at a time, while the sheet is neither sorted nor filtered."), { kind: "error" });
+    const to = before ?? (step < 0 ? at - 1 : at + count + 1);
+    if (to <= sheet.headerRow || (to >= at && to <= at + count) || to > (sheet.capacity || Infinity) + 1) return null;
+    return this.#changeRows({ do: "move", at, count, to }, to < at ? to : to - count, count);
   }
 
   /** Copy the selected rows to the first free ones; names of the first column, which must differ, go on counting. */
@@ -189,7 +277,7 @@ export class Actions {
     for (let r = r0; r <= r1; r++) {
       const row = order.row(r);
       if (!sheet.isUsed(row) || (sheet.capacity && free > sheet.capacity)) continue;
-      for (const column of columns) {
+      for (const column of sheet.columns) {
         const value = isComputed(column) ? null : sheet.value(row, column.at);
         if (!isFilled(value)) continue;
         const isName = named?.at === column.at;

@@ -51,12 +51,30 @@ export function sortKey(store, sheet, row, column) {
   return cellValue(store, sheet, row, column);
 }
 
-/** The looks of a cell: text, classes of style, and its problem if it has one. */
+const SIZES = new Set(["breadth", "width", "height"]);
+const plainName = (name) => String(name).trim().replace(/\s+/g, " ").toLowerCase();
+let sizes = {}; // of the Catalogue, by type
+
+/** The size that the Catalogue has for a blank cell of Items, in the unit of its column; "" where there is none. */
+function catalogueText(store, sheet, row, column) {
+  const source = store.sheet("Catalogue");
+  const type = sheet.name === "Items" && SIZES.has(column.field) && sheet.value(row, sheet.column("type")?.at);
+  if (!type || !source?.column("type")) return "";
+  if (sizes.source !== source || sizes.revision !== source.revision) {
+    sizes = { source, revision: source.revision, rows: new Map(source.rowNumbers.map((one) => [plainName(source.value(one, source.column("type").at)), one])) };
+  }
+  const own = source.column(column.field);
+  const value = own && source.value(sizes.rows.get(plainName(type)), own.at);
+  return typeof value === "number" ? number(Number((value * own.factor / column.factor).toPrecision(6))) : "";
+}
+
+/** The looks of a cell: text, what stands in a blank one in grey, classes of style, and its problem if it has one. */
 export function describeCell(store, sheet, row, column) {
-  const text = cellText(store, sheet, row, column);
-  let css = "";
-  if (column.kind === "number" || column.kind === "count" || (column.kind === "live" && column.field !== "class")) css = " number";
-  else if (column.kind === "own" && typeof sheet.value(row, column.at) === "number") css = " number";
+  const own = cellText(store, sheet, row, column);
+  const text = own || catalogueText(store, sheet, row, column);
+  let css = own === text ? "" : " ghost";
+  if (column.kind === "number" || column.kind === "count" || (column.kind === "live" && column.field !== "class")) css += " number";
+  else if (column.kind === "own" && typeof sheet.value(row, column.at) === "number") css += " number";
   if (column.kind === "live") css += " live";
   if (column.field === "class" && column.kind === "live") css += ` risk ${classStyle(store.live.get(row))}`;
   return { text, css, problem: column.at === null ? undefined : store.problemAt(sheet.name, row, column.at) };

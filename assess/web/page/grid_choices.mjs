@@ -8,12 +8,13 @@ const HEIGHT = 232;
 
 const plain = (text) => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
 
-/** The names that contain a text, those first that begin with it. */
+/** The names that contain all words of a text, those first that begin with it. */
 export function filterNames(names, text) {
   const part = plain(text.trim());
-  if (!part) return names;
-  const has = names.map((name) => [name, plain(name).indexOf(part)]).filter(([, at]) => at >= 0);
-  return [...has.filter(([, at]) => at === 0), ...has.filter(([, at]) => at > 0)].map(([name]) => name);
+  const words = part.split(/\s+/);
+  const has = names.filter((name) => words.every((word) => plain(name).includes(word)));
+  const begins = (name) => plain(name).startsWith(part);
+  return [...has.filter(begins), ...has.filter((name) => !begins(name))];
 }
 
 /** The name that is meant without choosing: of a closed list the first that begins so, else one that is the only one. */
@@ -53,6 +54,7 @@ export class ChoiceList {
     const { names, isClosed } = this.choices;
     this.names = filterNames(names, text);
     this.marked = this.names.indexOf(current ?? guessName(names, text, isClosed));
+    this.isGuess = current === undefined;
     this.node.hidden = this.names.length === 0;
     if (this.node.hidden) return this.close();
     const shown = this.names.slice(0, MOST).map((name, i) => el("div", { class: "grid-choice", role: "option", id: `grid-choice-${i}`, dataset: { name }, text: name }));
@@ -75,6 +77,9 @@ export class ChoiceList {
 
   move(step) {
     const count = Math.min(this.names.length, MOST);
+    const stays = this.isGuess && step > 0 && this.marked === 0; // the first one down takes what was only guessed
+    this.isGuess = false;
+    if (stays) return;
     this.marked = this.marked < 0 ? (step > 0 ? 0 : count - 1) : (this.marked + step + count) % count;
     this.#mark();
   }

@@ -4,7 +4,7 @@
 import { el } from "./elements.mjs";
 import { hasChoices, isComputed, listChoices } from "./grid_cells.mjs";
 import { ChoiceList } from "./grid_choices.mjs";
-import { ROW_HEIGHT, HEAD_HEIGHT } from "./grid.mjs";
+import { ROW_HEIGHT } from "./grid.mjs";
 import { t } from "./texts.mjs";
 
 export class Editor {
@@ -55,7 +55,7 @@ export class Editor {
     const inside = (value, low, high) => Math.max(low, Math.min(high, value));
     return [
       inside(left, box.scrollLeft, Math.max(box.scrollLeft, box.scrollLeft + box.clientWidth - 60)),
-      inside(top, box.scrollTop + HEAD_HEIGHT, Math.max(box.scrollTop, box.scrollTop + box.clientHeight - ROW_HEIGHT)),
+      inside(top, box.scrollTop + this.grid.headHeight, Math.max(box.scrollTop, box.scrollTop + box.clientHeight - ROW_HEIGHT)),
     ];
   }
 
@@ -128,7 +128,18 @@ export class Editor {
     const shown = this.#shown(target);
     this.#end();
     if (all) this.actions.fillSelection(text === "" ? null : text);
-    else if (text !== shown) this.actions.edit([[target.sheet.name, target.row, target.column.at, text === "" ? null : text]], t("typing"));
+    else if (text !== shown) {
+      this.grid.store.hush([target.sheet.name, target.row]);
+      this.actions.edit([[target.sheet.name, target.row, target.column.at, text === "" ? null : text]], t("typing"));
+    }
+  }
+
+  /** Rows come to lie elsewhere: what is typed goes with its own. */
+  shift(sheet, move) {
+    if (!this.mode || this.target.sheet.name !== sheet) return;
+    const row = move(this.target.row);
+    if (row === null) return void this.#end();
+    Object.assign(this.target, { row, r: this.grid.order.indexOf(row) });
   }
 
   #shown(target) {

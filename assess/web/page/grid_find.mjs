@@ -1,6 +1,7 @@
-// Find a text in the rows of the view.
+// Find a text in the rows of the view, and replace it.
 
 import { el } from "./elements.mjs";
+import { isComputed } from "./grid_cells.mjs";
 import { icon } from "./icons.mjs";
 import { t, tn } from "./texts.mjs";
 
@@ -11,12 +12,15 @@ export class FindBar {
   #at = -1;
   #timer = 0;
 
-  constructor(grid, focus) {
-    Object.assign(this, { grid, focus });
+  constructor(grid, actions, focus) {
+    Object.assign(this, { grid, actions, focus });
     this.input = el("input", { type: "search", "aria-label": t("Find"), placeholder: t("Find") });
     this.count = el("span", { class: "grid-find-count", role: "status" });
     const button = (name, label, click) => el("button", { type: "button", class: "quiet", "aria-label": label, title: label, on: { click } }, icon(name));
-    this.node = el("div", { class: "grid-find", role: "search", hidden: true }, this.input, this.count,
+    const replace = (text, isAll) => el("button", { type: "button", text, on: { click: () => this.#replace(isAll) } });
+    this.other = el("input", { type: "text", "aria-label": t("Replace with"), placeholder: t("Replace with") });
+    this.replacing = el("span", { class: "grid-replace", hidden: true }, this.other, replace(t("Replace"), false), replace(t("Replace all"), true));
+    this.node = el("div", { class: "grid-find", role: "search", hidden: true }, this.input, this.replacing, this.count,
       button("up", t("Previous"), () => this.step(-1)), button("down", t("Next"), () => this.step(1)), button("close", t("Close"), () => this.close()));
     this.input.addEventListener("input", () => {
       clearTimeout(this.#timer);
@@ -25,8 +29,9 @@ export class FindBar {
     this.node.addEventListener("keydown", (event) => this.#key(event));
   }
 
-  open() {
+  open(replaces = !this.replacing.hidden) {
     this.node.hidden = false;
+    this.replacing.hidden = !replaces || !this.actions.canEdit;
     this.input.focus();
     this.input.select();
     this.#search();
@@ -44,7 +49,8 @@ export class FindBar {
     const isControl = event.ctrlKey || event.metaKey;
     if (event.key === "Escape") this.close();
     else if (event.key === "Enter" && event.target === this.input) this.step(event.shiftKey ? -1 : 1);
-    else if (isControl && event.key.toLowerCase() === "f") this.input.select();
+    else if (event.key === "Enter" && event.target === this.other) this.#replace(false);
+    else if (isControl && "fh".includes(event.key.toLowerCase())) this.open(event.key.toLowerCase() === "h");
     else return;
     event.preventDefault();
     event.stopPropagation();
@@ -87,6 +93,22 @@ export class FindBar {
       this.grid.show();
     }
     this.grid.ask();
+  }
+
+  /** Replace the text in the cell that is found, or in all of them, as one step. */
+  async #replace(isAll) {
+    this.#search();
+    const { sheet, order, columns } = this.grid;
+    const cells = (isAll ? this.#matches : this.#matches.slice(this.#at, this.#at + 1)).filter(([, c]) => !isComputed(columns[c]));
+    const pattern = new RegExp(this.grid.found.replace(/[.*+?^${}()|[\]\\]/g, "\\$&"), "gi");
+    const edits = cells.map(([r, c]) => [sheet.name, order.row(r), columns[c].at, this.grid.text(r, c).replace(pattern, () => this.other.value) || null]);
+    if (!isAll) this.#at = Math.min(this.#at + 1, this.#matches.length - 1);
+    const next = isAll ? null : this.#matches[this.#at];
+    if (!edits.length || !(await this.actions.edit(edits, t("replace")))) return;
+    this.#matches = this.#list(this.grid.found);
+    this.#at = Math.max(0, this.#matches.findIndex(([r, c]) => r === next?.[0] && c === next?.[1]));
+    this.#show();
+    this.count.textContent = tn("{n:,} cell replaced", "{n:,} cells replaced", edits.length);
   }
 
   /** Where the sheet has changed: count anew without moving. */

@@ -79,11 +79,12 @@ export class Keys {
     const [down, right] = ARROWS[key];
     const { selection } = this.grid;
     this.#tabColumn = null;
-    if (altKey && key === "ArrowDown") {
+    if (altKey && key === "ArrowDown" && !(selection.isRows && !shiftKey)) {
       if (shiftKey) this.act.menu();
       else this.editor.openChoices();
       return true;
     }
+    if (altKey && down && selection.isRows) return this.actions.moveRows(down), true;
     if (altKey) return false;
     if (isControl) selection.jump(down, right, shiftKey);
     else selection.move(down, right, shiftKey);
@@ -99,9 +100,10 @@ export class Keys {
       Home: () => this.#to([null, 0], shiftKey), End: () => this.#to([null, Infinity], shiftKey),
       F2: () => this.editor.edit(), Enter: () => this.#enter(false, shiftKey),
       Delete: () => this.actions.clear(), Backspace: () => this.editor.edit(""),
-      Escape: () => (this.#leaves = true),
+      Escape: () => (this.#leaves = true), ContextMenu: () => this.act.context(),
     }[key];
     if (act) return act(), true;
+    if (key === "F10" && shiftKey) return this.act.context(), true;
     if (key === "Tab") return this.#leave(shiftKey);
     if (key === " " && shiftKey) return selection.rows(), true;
     return false;
@@ -132,9 +134,9 @@ export class Keys {
     const { selection } = this.grid;
     const act = {
       z: () => (shiftKey ? this.store.redo() : this.store.undo()), y: () => this.store.redo(),
-      f: () => this.act.find(), d: () => this.actions.fillDown(), r: () => this.actions.fillRight(), a: () => this.#all(),
+      f: () => this.act.find(false), h: () => this.act.find(true), d: () => this.actions.fillDown(), r: () => this.actions.fillRight(), a: () => this.#all(),
       home: () => this.#to([0, 0], shiftKey), end: () => this.#to(this.#last(), shiftKey), " ": () => selection.columns(),
-      "-": () => this.actions.clearRows(),
+      "-": () => this.actions.deleteRows(), "+": () => this.actions.insertRows(),
     }[key.toLowerCase()];
     if (!act) return false;
     act();

@@ -114,5 +114,7 @@ export function describeOrder(order) {
     parts.push(down ? t("sorted by {column}, descending", { column: column.label }) : t("sorted by {column}", { column: column.label }));
   }
   for (const { column } of order.filters.values()) parts.push(t("filtered by {column}", { column: column.label }));
+  if ([...order.only].some((one) => one !== "problems")) parts.push(t("filtered by class"));
+  if (order.only.has("problems")) parts.push(t("with problems"));
   return parts.join("; ");
 }

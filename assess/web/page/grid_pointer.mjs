@@ -1,6 +1,6 @@
 // The pointer in the grid: selecting, the fill handle, widths of columns, the arrow of a list.
 
-import { HEAD_HEIGHT, ROW_HEIGHT } from "./grid.mjs";
+import { ROW_HEIGHT } from "./grid.mjs";
 
 const ARROW = 22;
 const EDGE_STEP = 18;
@@ -18,6 +18,7 @@ export class Pointer {
     box.addEventListener("pointercancel", () => this.#end());
     box.addEventListener("dblclick", (event) => this.#double(event));
     box.addEventListener("click", (event) => this.#click(event));
+    box.addEventListener("contextmenu", (event) => this.#context(event));
   }
 
   /** The row and column of the view at a point of the window, as near as there is one. */
@@ -26,7 +27,7 @@ export class Pointer {
     const edge = grid.box.getBoundingClientRect();
     const inBox = clientX - edge.left;
     const x = inBox < grid.frozenWidth ? inBox : inBox + grid.box.scrollLeft;
-    const r = Math.floor((clientY - edge.top + grid.box.scrollTop - HEAD_HEIGHT) / ROW_HEIGHT);
+    const r = Math.floor((clientY - edge.top + grid.box.scrollTop - grid.headHeight) / ROW_HEIGHT);
     const at = grid.columns.findIndex((column) => x < column.x + column.px);
     const last = grid.order.length - 1;
     return [Math.max(0, Math.min(last, r)), at < 0 ? grid.columns.length - 1 : at];
@@ -58,8 +59,15 @@ export class Pointer {
 
   // ---- beginnings
 
+  /** Ctrl keeps what was selected before. */
+  #keeps({ ctrlKey, metaKey, shiftKey }) {
+    const keeps = (ctrlKey || metaKey) && !shiftKey;
+    if (keeps) this.grid.selection.keep();
+    return keeps || shiftKey;
+  }
+
   _cells(event) {
-    this.grid.selection.set(this.cellAt(event), event.shiftKey);
+    this.grid.selection.set(this.cellAt(event), event.shiftKey, this.#keeps(event));
   }
 
   _list() {
@@ -70,13 +78,15 @@ export class Pointer {
   _rows(event) {
     const [r] = this.cellAt(event);
     const { selection, columns } = this.grid;
-    selection.setRange([event.shiftKey ? selection.anchor[0] : r, 0], [r, columns.length - 1]);
+    const isPlain = !event.shiftKey && !event.ctrlKey && !event.metaKey;
+    if (isPlain && this.#drag && this.grid.canEdit && selection.isRows && selection.hasRow(r)) return void (this.#drag.kind = "move");
+    selection.setRange([event.shiftKey ? selection.anchor[0] : r, 0], [r, columns.length - 1], this.#keeps(event));
   }
 
   _columns(event) {
     const c = Number(event.target.closest("[data-column]").dataset.column);
     const { selection, order } = this.grid;
-    selection.setRange([0, event.shiftKey ? selection.anchor[1] : c], [order.length - 1, c]);
+    selection.setRange([0, event.shiftKey ? selection.anchor[1] : c], [order.length - 1, c], this.#keeps(event));
   }
 
   _all() {
@@ -103,8 +113,9 @@ export class Pointer {
     const { selection, columns, order } = this.grid;
     const [r, at] = this.cellAt(event);
     if (kind === "cells") selection.set([r, at], true);
-    else if (kind === "rows") selection.setRange([selection.anchor[0], 0], [r, columns.length - 1]);
-    else if (kind === "columns") selection.setRange([0, selection.anchor[1]], [order.length - 1, at]);
+    else if (kind === "rows") selection.setRange([selection.anchor[0], 0], [r, columns.length - 1], true);
+    else if (kind === "columns") selection.setRange([0, selection.anchor[1]], [order.length - 1, at], true);
+    else if (kind === "move") this.#showMove(r);
     else if (kind === "width") this.#resize(c, from + event.clientX - x);
     else if (kind === "fill") this.#showFill(r, at);
   }
@@ -115,7 +126,7 @@ export class Pointer {
 
   #isOutside({ clientX, clientY }) {
     const edge = this.grid.box.getBoundingClientRect();
-    return clientY < edge.top + HEAD_HEIGHT || clientY > edge.bottom || clientX < edge.left + this.grid.frozenWidth || clientX > edge.right;
+    return clientY < edge.top + this.grid.headHeight || clientY > edge.bottom || clientX < edge.left + this.grid.frozenWidth || clientX > edge.right;
   }
 
   /** Scroll while the pointer is held outside. */
@@ -127,7 +138,7 @@ export class Pointer {
       const { clientX, clientY } = this.#drag.event;
       const { box, frozenWidth } = this.grid;
       const edge = box.getBoundingClientRect();
-      if (clientY < edge.top + HEAD_HEIGHT) box.scrollTop -= EDGE_STEP;
+      if (clientY < edge.top + this.grid.headHeight) box.scrollTop -= EDGE_STEP;
       if (clientY > edge.bottom) box.scrollTop += EDGE_STEP;
       if (clientX > edge.right) box.scrollLeft += EDGE_STEP;
       if (clientX < edge.left + frozenWidth && this.grid.selection.head[1] > 0 && box.scrollLeft > 0) box.scrollLeft -= EDGE_STEP;
@@ -148,12 +159,24 @@ export class Pointer {
     this.grid.ask();
   }
 
+  /** Where the selected rows come to lie that are dragged by their numbers. */
+  #showMove(r) {
+    const { selection, order, columns } = this.grid;
+    const [r0, , r1] = selection.range;
+    const to = r < r0 ? r : r > r1 ? r - (r1 - r0) : r0;
+    this.#drag.to = r < r0 ? order.row(r) : r > r1 ? order.row(r) + 1 : null;
+    this.grid.fillTarget = [to, 0, to + r1 - r0, columns.length - 1];
+    this.grid.ask();
+  }
+
   // ---- endings
 
   #up(event) {
     const drag = this.#drag;
     this.#end();
-    if (drag?.kind === "fill" && drag.target) this.actions.fillTo(drag.target, event.ctrlKey || event.metaKey);
+    if (drag?.kind === "move" && !drag.to) this._rows(event);
+    else if (drag?.kind === "move") this.actions.moveRows(0, drag.to);
+    else if (drag?.kind === "fill" && drag.target) this.actions.fillTo(drag.target, event.ctrlKey || event.metaKey);
   }
 
   #end() {
@@ -168,6 +191,19 @@ export class Pointer {
     const edge = target?.closest(".grid-edge");
     if (edge) this.grid.fitWidth(Number(edge.closest("[data-column]").dataset.column));
     else if (target?.closest("[role=gridcell]") && !this.editor.mode) this.editor.edit();
+  }
+
+  /** The right button, or a long touch: what is pointed at is selected, unless it is already. */
+  #context(event) {
+    event.preventDefault();
+    if (event.target === this.editor.input || this.editor.mode) return;
+    const { selection } = this.grid;
+    const [r, c] = this.cellAt(event);
+    const kind = this.#kind(event.target, event);
+    if (kind === "rows" && !(selection.isRows && selection.hasRow(r))) this._rows(event);
+    else if (kind === "columns") this._columns(event);
+    else if (!selection.has(r, c)) selection.set([r, c]);
+    this.act.context([event.clientX, event.clientY]);
   }
 
   #click(event) {

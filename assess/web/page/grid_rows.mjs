@@ -20,13 +20,14 @@ export class RowOrder {
     const kept = [...(earlier?.filters ?? [])].map(([label, one]) => [label, again(one)]).filter(([, one]) => one.column);
     this.sort = earlier?.sort && again(earlier.sort).column ? again(earlier.sort) : null; // {column, down}
     this.filters = new Map(kept); // label -> {column, contains, values}
+    this.only = earlier?.only ?? new Set(); // classes, "" for none, and "problems"
     this.collator = new Intl.Collator(document.documentElement.lang || undefined, { numeric: true, sensitivity: "base" });
     this.apply();
   }
 
   /** Whether the rows stand as in the file, all of them. */
   get isPlain() {
-    return this.sort === null && this.filters.size === 0;
+    return this.sort === null && this.filters.size === 0 && this.only.size === 0;
   }
 
   get #end() {
@@ -73,7 +74,8 @@ export class RowOrder {
       this.#rows = null;
       return;
     }
-    const rows = this.sheet.rowNumbers.filter((row) => this.sheet.isUsed(row) && this.#passes(row));
+    const bad = this.only.has("problems") ? this.store.rowsWithProblems(this.sheet.name) : null;
+    const rows = this.sheet.rowNumbers.filter((row) => this.sheet.isUsed(row) && this.#passes(row) && (!bad || bad.has(row)));
     this.#used = rows.length;
     if (this.sort) this.#sortRows(rows);
     this.#rows = rows;
@@ -95,7 +97,21 @@ export class RowOrder {
     this.#indices = null;
   }
 
+  /** Rows of the file come to lie elsewhere; new ones stand above the row that follows them. */
+  shift(move, [at, count, to]) {
+    if (!this.#rows) return;
+    this.#rows = this.#rows.map(move).filter((row) => row !== null);
+    this.#top = Math.max(this.sheet.lastRow, ...this.#rows);
+    if (to === null && count > 0) {
+      const next = this.#rows.indexOf(at + count);
+      this.#rows.splice(next < 0 ? this.#rows.length : next, 0, ...Array.from({ length: count }, (_, i) => at + i));
+    }
+    this.extend();
+  }
+
   #passes(row) {
+    const classes = [...this.only].filter((one) => one !== "problems");
+    if (classes.length && !classes.includes(this.store.live.get(row)?.class ?? "")) return false;
     for (const { column, contains, values } of this.filters.values()) {
       const text = cellText(this.store, this.sheet, row, column);
       if (contains && !text.toLowerCase().includes(contains.toLowerCase())) return false;

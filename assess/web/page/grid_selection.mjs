@@ -1,11 +1,14 @@
 // The selected range of the grid: from the anchor, the active cell, to the head, which Shift moves. Rows are counted in the
 // view, columns among those shown.
 
+const isIn = ([r0, c0, r1, c1], r, c) => r >= r0 && r <= r1 && c >= c0 && c <= c1;
 const clamp = (value, low, high) => Math.max(low, Math.min(high, value));
 
 export class Selection {
   anchor = [0, 0];
   head = [0, 0];
+  /** Ranges that were selected before, and kept by Ctrl. */
+  others = [];
 
   /**
    * @param {{rows: function(): number, columns: function(): number, isFilled: function(number, number): boolean}} size
@@ -22,13 +25,27 @@ export class Selection {
     return [Math.min(r, q), Math.min(c, d), Math.max(r, q), Math.max(c, d)];
   }
 
-  get isSingle() {
-    return this.anchor[0] === this.head[0] && this.anchor[1] === this.head[1];
+  get ranges() {
+    return [...this.others, this.range];
+  }
+
+  /** Whether whole rows are selected. */
+  get isRows() {
+    const [, c0, , c1] = this.range;
+    return c0 === 0 && c1 === this.size.columns() - 1;
   }
 
   has(r, c) {
-    const [r0, c0, r1, c1] = this.range;
-    return r >= r0 && r <= r1 && c >= c0 && c <= c1;
+    return isIn(this.range, r, c) || this.others.some((range) => isIn(range, r, c));
+  }
+
+  hasRow(r) {
+    return this.ranges.some(([r0, , r1]) => r >= r0 && r <= r1);
+  }
+
+  /** Keep what is selected while something else is selected. */
+  keep() {
+    this.others.push(this.range);
   }
 
   #inside([r, c]) {
@@ -36,13 +53,15 @@ export class Selection {
   }
 
   /** Select one cell, or with `extend` up to it. */
-  set(cell, extend = false) {
+  set(cell, extend = false, keeps = extend) {
+    if (!keeps) this.others = [];
     this.head = this.#inside(cell);
     if (!extend) this.anchor = [...this.head];
     this.changed();
   }
 
-  setRange(from, to) {
+  setRange(from, to, keeps = false) {
+    if (!keeps) this.others = [];
     this.anchor = this.#inside(from);
     this.head = this.#inside(to);
     this.changed();
@@ -50,6 +69,7 @@ export class Selection {
 
   /** Keep it inside after rows or columns have gone. */
   keepInside() {
+    this.others = [];
     this.anchor = this.#inside(this.anchor);
     this.head = this.#inside(this.head);
   }

@@ -1,9 +1,11 @@
 // The tab of the sheets: one grid or form, its tools and the problems.
 
-import { clear, el } from "./elements.mjs";
+import { el } from "./elements.mjs";
 import { fixButtons } from "./fixes.mjs";
 import { isComputed, problemText } from "./grid_cells.mjs";
+import { CLASSES, describe } from "./classes.mjs";
 import { Actions } from "./grid_actions.mjs";
+import { ContextMenu } from "./grid_context.mjs";
 import { Editor } from "./grid_editor.mjs";
 import { FindBar } from "./grid_find.mjs";
 import { Form } from "./grid_form.mjs";
@@ -13,7 +15,8 @@ import { ColumnMenu, describeOrder } from "./grid_menu.mjs";
 import { Pointer } from "./grid_pointer.mjs";
 import { icon } from "./icons.mjs";
 import { ProblemsList } from "./problems_list.mjs";
-import { t, tn } from "./texts.mjs";
+import { number, t, tn } from "./texts.mjs";
+import { html, nothing, render } from "./vendor/lit-html.mjs";
 
 const EDITED_FROM = "(min-width: 900px)";
 const KEPT = "assess-sheet";
@@ -37,12 +40,16 @@ class GridView {
     this.actions = new Actions(this.grid, store, (text) => this.say(text));
     this.editor = new Editor(this.grid, this.actions, (text) => this.say(text));
     const focus = () => this.editor.focus();
-    this.find = new FindBar(this.grid, focus);
+    this.find = new FindBar(this.grid, this.actions, focus);
     this.menu = new ColumnMenu(this.grid, () => this.#reorder(), focus);
-    const act = { find: () => this.find.open(), menu: (c) => this.menu.open(c ?? this.grid.selection.anchor[1]) };
+    const act = {
+      find: (replaces) => this.find.open(replaces), menu: (c) => this.menu.open(c ?? this.grid.selection.anchor[1]),
+      context: (point) => this.context.open(point), reorder: () => (this.#reorder(), this.editor.focus()),
+    };
     const parts = { grid: this.grid, editor: this.editor, actions: this.actions, store, act };
     this.keys = new Keys(parts);
     this.pointer = new Pointer(parts);
+    this.context = new ContextMenu(parts);
     this.#build(root);
     this.#listen();
   }
@@ -56,15 +63,17 @@ class GridView {
     this.reading = el("p", { class: "sheet-reading", hidden: true, text: t("To edit, make the window at least 900 pixels wide; here the workbook can be read.") });
     this.where = el("b", { class: "sheet-cell" });
     this.about = el("span", { class: "sheet-about" });
-    this.line = el("div", { class: "sheet-line" }, this.where, this.about);
+    this.sums = el("span", { class: "sheet-sums" });
+    this.chips = el("div", { class: "sheet-chips", role: "group", "aria-label": t("Show only these rows") });
+    this.problems = new ProblemsList(this.store);
+    this.line = el("div", { class: "sheet-line" }, this.where, el("span", { class: "sheet-abouts" }, this.about), this.sums, this.order, this.problems.button);
     this.lacking = el("p", { class: "sheet-lacking", hidden: true });
     this.help = el("p", { class: "unseen", id: "grid-help", text: t("Arrow keys move, typing replaces, F2 edits, Alt and Down opens the choices, Escape and then Tab leaves the table.") });
     this.live = el("div", { class: "unseen", role: "status", "aria-live": "polite" });
-    this.panel = el("div", { class: "sheet-panel", role: "tabpanel", id: "sheet-panel" }, this.lacking, this.grid.box, this.form.node);
-    this.problems = new ProblemsList(this.store);
+    this.panel = el("div", { class: "sheet-panel", role: "tabpanel", id: "sheet-panel" }, this.lacking, this.grid.box, this.form.node, this.problems.node);
     this.editor.input.setAttribute("aria-describedby", "grid-help");
     root.classList.add("sheet-view");
-    root.append(el("div", { class: "sheet-bar" }, this.tabs, this.tools, this.find.node), this.reading, this.order, this.panel, this.line, this.problems.node, this.menu.node, this.help, this.live);
+    root.append(el("div", { class: "sheet-bar" }, this.tabs, this.chips, this.tools, this.find.node), this.reading, this.panel, this.line, this.menu.node, this.context.node, this.help, this.live);
   }
 
   #toolButtons() {
@@ -74,22 +83,18 @@ class GridView {
     this.editing = [
       button("add-row", t("Add a row"), "", () => this.actions.addRow()),
       button("copy", t("Duplicate rows"), "", () => this.actions.duplicateRows()),
-      button("clear-row", t("Clear rows"), "Ctrl+−", () => this.actions.clearRows()),
-      button("fill-down", t("Fill down"), "Ctrl+D", () => this.actions.fillDown()),
     ];
-    return [...this.editing, find];
+    return [...this.editing, find, tool("more", t("Cells and rows"), "Shift+F10", () => this.context.open())];
   }
 
   #drawTabs() {
     const sheets = this.store.sheets;
-    const focused = document.activeElement?.dataset?.sheet;
-    clear(this.tabs).append(...sheets.map((sheet) => {
+    render(sheets.map((sheet) => {
       const isOpen = sheet === this.sheet;
       const errors = this.store.problems.filter((one) => one.sheet === sheet.name && one.severity === "error").length;
-      const mark = errors ? el("span", { class: "sheet-errors", title: tn("{n:,} error", "{n:,} errors", errors), text: `✖ ${errors}` }) : null;
-      return el("button", { type: "button", role: "tab", class: sheet.found ? "" : "lacking", "aria-selected": String(isOpen), "aria-controls": "sheet-panel", tabindex: isOpen ? "0" : "-1", dataset: { sheet: sheet.name }, on: { click: () => this.open(sheet.name) } }, sheet.title, mark);
-    }));
-    if (focused) this.tabs.querySelector(`[data-sheet="${focused}"]`)?.focus();
+      const mark = errors ? html`<span class="sheet-errors" title=${tn("{n:,} error", "{n:,} errors", errors)}>✖ ${errors}</span>` : nothing;
+      return html`<button type="button" role="tab" class=${sheet.found ? "" : "lacking"} aria-selected=${isOpen} aria-controls="sheet-panel" tabindex=${isOpen ? 0 : -1} data-sheet=${sheet.name} @click=${() => this.open(sheet.name)}>${sheet.title}${mark}</button>`;
+    }), this.tabs);
   }
 
   // ---- listening
@@ -98,8 +103,13 @@ class GridView {
     const { store, grid } = this;
     store.addEventListener("book", () => this.#opened());
     store.addEventListener("cells", ({ detail }) => this.#changed(detail));
-    store.addEventListener("live", () => this.#draw());
-    store.addEventListener("problems", () => (this.#drawTabs(), this.#draw(), this.#drawLine()));
+    store.addEventListener("live", () => (this.#draw(), this.#drawChips()));
+    store.addEventListener("problems", () => (this.#drawTabs(), this.#drawChips(), this.#draw(), this.#drawLine()));
+    store.addEventListener("rows", ({ detail: { sheet, shift, move } }) => {
+      if (this.sheet?.name !== sheet) return;
+      this.grid.order.shift(move, shift);
+      this.editor.shift(sheet, move);
+    });
     store.addEventListener("history", ({ detail }) => this.#isShown && this.#showChange(detail));
     store.addEventListener("reveal", ({ detail }) => this.reveal(detail));
     store.addEventListener("selection", ({ detail }) => detail.source !== "grid" && (this.#waiting = { ...store.selection }));
@@ -124,12 +134,12 @@ class GridView {
     this.#draw();
   }
 
-  /** Ctrl+F finds in the grid, wherever the focus is on this tab. */
+  /** Ctrl+F finds and Ctrl+H replaces in the grid, wherever the focus is on this tab. */
   #globalKey(event) {
-    if (!this.#isShown || event.defaultPrevented || !(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "f") return;
+    if (!this.#isShown || event.defaultPrevented || !(event.ctrlKey || event.metaKey) || !["f", "h"].includes(event.key.toLowerCase())) return;
     if (this.sheet?.layout === "form" || document.querySelector("dialog[open]")) return;
     event.preventDefault();
-    this.find.open();
+    this.find.open(event.key.toLowerCase() === "h");
   }
 
   #clipboard(kind, event) {
@@ -174,7 +184,7 @@ class GridView {
     this.grid.box.hidden = isForm || !sheet.found;
     this.form.node.hidden = !isForm || !sheet.found;
     this.tools.hidden = isForm || !sheet.found;
-    this.line.hidden = isForm || !sheet.found;
+    for (const one of [this.where, this.about, this.sums]) one.hidden = isForm || !sheet.found;
     this.order.hidden = true;
     this.lacking.hidden = sheet.found;
     this.lacking.textContent = sheet.found ? "" : t("This workbook has no sheet {sheet}, or one without its headers.", { sheet: sheet.title });
@@ -184,6 +194,7 @@ class GridView {
     if (isForm) this.form.open(sheet);
     else this.grid.open(sheet);
     this.#drawOrder();
+    this.#drawChips();
   }
 
   #changed(cells) {
@@ -217,12 +228,37 @@ class GridView {
     const all = () => {
       this.grid.order.sort = null;
       this.grid.order.filters.clear();
+      this.grid.order.only.clear();
       this.#reorder();
       this.editor.focus();
     };
-    clear(this.order).append(el("span", { role: "status", text }), " ",
-      el("button", { type: "button", class: "quiet", text: t("Sort and filter again"), on: { click: () => this.#reorder() } }), " ",
-      el("button", { type: "button", class: "quiet", text: t("Show all"), on: { click: all } }));
+    render(html`<span role="status">${text}</span>
+      <button type="button" class="quiet" @click=${() => this.#reorder()}>${t("Sort and filter again")}</button>
+      <button type="button" class="quiet" @click=${all}>${t("Show all")}</button>`, this.order);
+  }
+
+  /** Classes with the number of their pieces, and rows with problems: each shows only these rows, or all again. */
+  #drawChips() {
+    const { store, sheet } = this;
+    if (!sheet) return;
+    const isTable = sheet.found && sheet.layout !== "form";
+    const n = isTable ? store.rowsWithProblems(sheet.name).size : 0;
+    const { only } = (isTable && this.grid.order) || { only: new Set() };
+    const classes = sheet.name === "Items" ? [...CLASSES, ""].filter((key) => store.counts[key] || only.has(key)) : [];
+    const chip = (key, css, label, text) => {
+      const click = () => {
+        if (!only.delete(key)) only.add(key);
+        this.#reorder();
+        this.#drawChips();
+      };
+      return html`<button type="button" class="sheet-chip ${css}" aria-pressed=${only.has(key)} title=${label} aria-label=${label || text} data-only=${key} @click=${click}>${text}</button>`;
+    };
+    const pale = store.isSimulating ? "pale" : "";
+    render(html`${classes.map((key) => {
+      const { sign, word, css } = describe(key);
+      const count = store.counts[key] ?? 0;
+      return chip(key, `${css} ${pale}`, t("{word}: {n:,}", { word, n: count }), `${sign} ${number(count)}`);
+    })}${n || only.has("problems") ? chip("problems", "", "", t("With problems {n:,}", { n })) : nothing}`, this.chips);
   }
 
   // ---- selection
@@ -231,10 +267,11 @@ class GridView {
     const { active, order, selection, sheet } = this.grid;
     if (!active) return;
     clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => this.say(this.#describe(active)), SAY_MS);
+    this.#timer = setTimeout(() => (this.say([this.#describe(active), this.#drawSums()].filter(Boolean).join(", "))), SAY_MS);
+    const { quiet } = this.store;
+    if (quiet && (quiet[0] !== sheet.name || quiet[1] !== active.row)) this.store.hush(null);
     this.#drawLine();
-    const [r0, , r1] = selection.range;
-    const rows = Array.from({ length: r1 - r0 + 1 }, (_, i) => order.row(r0 + i));
+    const rows = selection.ranges.flatMap(([r0, , r1]) => Array.from({ length: r1 - r0 + 1 }, (_, i) => order.row(r0 + i)));
     this.store.select({ sheet: sheet.name, row: active.row, at: active.column.at ?? 0, rows }, "grid");
   }
 
@@ -243,6 +280,18 @@ class GridView {
     const parts = [name, column.label, this.grid.text(r, c) || t("blank")];
     if (isComputed(column)) parts.push(t("computed"));
     if (problem) parts.push(problemText(problem));
+    return parts.join(", ");
+  }
+
+  /** Show and return count, sum and average of what is selected, where it is more than one cell. */
+  #drawSums() {
+    const { selection } = this.grid;
+    const [r0, c0, r1, c1] = selection.range;
+    const found = selection.others.length || r0 !== r1 || c0 !== c1 ? this.actions.summarise() : null;
+    const parts = found?.count ? [t("Count {n:,}", { n: found.count })] : [];
+    const round = (value) => number(Number(value.toPrecision(12)));
+    if (found?.numbers) parts.push(t("Sum {sum}", { sum: round(found.sum) }), t("Average {average}", { average: number(Number((found.sum / found.numbers).toPrecision(6))) }));
+    this.sums.textContent = parts.join("   ");
     return parts.join(", ");
   }
 

@@ -6,13 +6,21 @@ export const same = (one, other) => one === other || (one ?? "") === (other ?? "
 export class KeptEdits {
   /** [{version, label, cells: [{cell: [sheet, row, at], typed, stored, before}]}] in their order */
   #groups = [];
+  #blocked = 0;
+
+  /** Keep nothing until a version is in the file: rows have other numbers there. */
+  block(version) {
+    this.#groups = [];
+    this.#blocked = version;
+  }
 
   add(version, label, cells) {
-    if (cells.length) this.#groups.push({ version, label, cells });
+    if (cells.length && !this.#blocked) this.#groups.push({ version, label, cells });
   }
 
   /** Forget what is in the file. */
   drop(savedVersion = Infinity) {
+    if (savedVersion >= this.#blocked) this.#blocked = 0;
     this.#groups = this.#groups.filter((one) => one.version > savedVersion);
   }
 

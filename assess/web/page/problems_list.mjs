@@ -1,15 +1,15 @@
-// The problems of the workbook, each with a way to its cell.
+// The problems of the workbook, each with a way to its cell: a drawer over the sheet, and the button that opens it.
 
-import { clear, el } from "./elements.mjs";
+import { el } from "./elements.mjs";
 import { fixButtons } from "./fixes.mjs";
 import { icon } from "./icons.mjs";
 import { cellName } from "./sheet.mjs";
 import { t, tn } from "./texts.mjs";
+import { html, nothing, render } from "./vendor/lit-html.mjs";
 
 const MOST = 100;
-const WIDE = 900;
-const SEVERITIES = ["error", "warning", "note"];
 const SIGNS = { error: "✖", warning: "▲", note: "ℹ" };
+const SEVERITIES = Object.keys(SIGNS);
 const count = {
   error: (n) => tn("{n:,} error", "{n:,} errors", n),
   warning: (n) => tn("{n:,} warning", "{n:,} warnings", n),
@@ -21,56 +21,58 @@ export class ProblemsList {
 
   constructor(store) {
     this.store = store;
-    this.filters = el("div", { class: "problems-filters", role: "group", "aria-label": t("Which problems to show") });
-    this.list = el("ul", { class: "problems-rows" });
-    this.node = el("section", { class: "problems", "aria-label": t("Problems") }, this.filters, this.list);
-    this.#restore();
+    this.node = el("section", { class: "problems", id: "problems", "aria-label": t("Problems") });
+    this.button = el("button", { type: "button", class: "quiet problems-button", "aria-controls": "problems", on: { click: () => this.toggle() } });
+    this.node.addEventListener("keydown", (event) => event.key === "Escape" && this.#close());
+    this.toggle(sessionStorage.getItem("assess-problems") === "open");
     store.addEventListener("problems", () => this.draw());
-    this.draw();
   }
 
-  #restore() {
-    const kept = sessionStorage.getItem("assess-problems");
-    this.isOpen = kept ? kept === "open" : innerWidth >= WIDE;
-  }
-
-  #toggleOpen() {
-    this.isOpen = !this.isOpen;
+  toggle(isOpen = !this.isOpen) {
+    this.isOpen = isOpen;
     sessionStorage.setItem("assess-problems", this.isOpen ? "open" : "closed");
     this.draw();
   }
 
-  draw() {
-    const { problems, liveError } = this.store;
-    this.node.hidden = problems.length === 0 && !liveError;
-    this.list.hidden = !this.isOpen;
-    const open = el("button", { type: "button", class: "quiet", "aria-expanded": String(this.isOpen), on: { click: () => this.#toggleOpen() } }, icon(this.isOpen ? "down" : "right"), t("Problems"));
-    clear(this.filters).append(open, ...SEVERITIES.map((one) => this.#filter(one)).filter(Boolean));
-    const shown = problems.filter((one) => !this.#hidden.has(one.severity));
-    shown.sort((one, other) => SEVERITIES.indexOf(one.severity) - SEVERITIES.indexOf(other.severity));
-    clear(this.list).append(...(liveError ? [el("li", { class: "error", text: liveError })] : []), ...shown.slice(0, MOST).map((one) => this.#row(one)));
-    const rest = Math.max(0, shown.length - MOST) + this.store.moreProblems;
-    if (rest) this.list.append(el("li", { text: tn("{n:,} more", "{n:,} more", rest) }));
+  #close() {
+    this.toggle(false);
+    this.button.focus();
   }
 
-  #filter(severity) {
-    const n = this.store.problems.filter((one) => one.severity === severity).length;
-    if (n === 0) return null;
-    const isShown = !this.#hidden.has(severity);
+  draw() {
+    const { problems, liveError, moreProblems } = this.store;
+    this.node.hidden = !this.isOpen;
+    this.button.setAttribute("aria-expanded", String(this.isOpen));
+    const counted = SEVERITIES.map((one) => [one, problems.filter(({ severity }) => severity === one).length]).filter(([, n]) => n);
+    render(html`${t("Problems")}${counted.map(([one, n]) => html` <span class="problems-count ${one}" title=${count[one](n)}>${SIGNS[one]} ${n}</span>`)}`, this.button);
+    const shown = problems.filter((one) => !this.#hidden.has(one.severity));
+    shown.sort((one, other) => SEVERITIES.indexOf(one.severity) - SEVERITIES.indexOf(other.severity));
+    const rest = Math.max(0, shown.length - MOST) + moreProblems;
+    render(html`<div class="problems-top">
+        <div class="problems-filters" role="group" aria-label=${t("Which problems to show")}>${counted.map((one) => this.#filter(...one))}</div>
+        <button type="button" class="quiet square" aria-label=${t("Close")} title=${t("Close")} @click=${() => this.#close()}>${icon("close")}</button>
+      </div>
+      <ul class="problems-rows">
+        ${liveError ? html`<li class="error">${liveError}</li>` : nothing}
+        ${shown.slice(0, MOST).map((one) => this.#row(one))}
+        ${rest ? html`<li>${tn("{n:,} more", "{n:,} more", rest)}</li>` : shown.length || liveError ? nothing : html`<li>${t("No problems.")}</li>`}
+      </ul>`, this.node);
+  }
+
+  #filter(severity, n) {
     const click = () => {
       if (!this.#hidden.delete(severity)) this.#hidden.add(severity);
       this.draw();
-      this.filters.querySelector(`[data-severity=${severity}]`)?.focus();
     };
-    return el("button", { type: "button", class: `problems-filter ${severity}`, dataset: { severity }, "aria-pressed": String(isShown), text: `${SIGNS[severity]} ${count[severity](n)}`, on: { click } });
+    return html`<button type="button" class="problems-filter ${severity}" aria-pressed=${!this.#hidden.has(severity)} @click=${click}>${SIGNS[severity]} ${count[severity](n)}</button>`;
   }
 
   #row(problem) {
     const { severity, sheet, row, at, cell, message, fix } = problem;
     const isCell = row !== null && row !== undefined && at !== null && at !== undefined;
     const where = isCell ? cellName(this.store.sheet(sheet), row, at) : [this.store.sheet(sheet)?.title ?? sheet, cell].filter(Boolean).join(" ");
-    const text = [el("span", { class: "problems-sign", "aria-hidden": "true", text: SIGNS[severity] }), el("b", { text: where }), ` ${message} `, fix ? el("span", { class: "problems-fix", text: fix }) : null];
-    const line = isCell || row ? el("button", { type: "button", on: { click: () => this.store.reveal([sheet, row, at ?? 0]) } }, text) : el("p", null, text);
-    return el("li", { class: severity }, line, fixButtons(this.store, problem));
+    const text = html`<span class="problems-sign" aria-hidden="true">${SIGNS[severity]}</span><b>${where}</b> ${message} <span class="problems-fix">${fix}</span>`;
+    const show = () => this.store.reveal([sheet, row, at ?? 0]);
+    return html`<li class=${severity}>${isCell || row ? html`<button type="button" @click=${show}>${text}</button>` : html`<p>${text}</p>`}${fixButtons(this.store, problem)}</li>`;
   }
 }

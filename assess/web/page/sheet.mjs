@@ -14,6 +14,15 @@ export function cellName(sheet, row, at) {
   return `${sheet?.title ?? "?"}!${columnLetters(at)}${row}`;
 }
 
+/** Where a row comes to lie after a shift `[at, count, to]` of `rows` in a CHANGE of docs/page.md; null where it is deleted. */
+export function shiftRow(row, [at, count, to]) {
+  if (to === null) return row < at ? row : count < 0 && row < at - count ? null : row + count;
+  const [first, end, isUp] = [Math.min(at, to), Math.max(at + count, to), to < at];
+  if (row < first || row >= end) return row;
+  const isMoved = row >= at && row < at + count;
+  return isMoved === isUp ? row - (isMoved ? end - first - count : count) : row + (isMoved ? end - first - count : count);
+}
+
 /** Whether a value fills its cell. */
 export const isFilled = (value) => value !== null && value !== undefined && value !== "";
 
@@ -21,6 +30,8 @@ export class Sheet {
   #rows = new Map();
   #numbers = null;
   #last = null;
+  /** How often a value was set, for what is worked out from all of them. */
+  revision = 0;
   #columns = new Map();
   #fields = new Map();
 
@@ -56,6 +67,7 @@ export class Sheet {
 
   /** Set a value in this copy only. */
   put(row, at, value) {
+    this.revision += 1;
     let cells = this.#rows.get(row);
     if (!cells) {
       if (value === null) return;
@@ -68,6 +80,14 @@ export class Sheet {
     if (value !== null || cells.some(isFilled)) return;
     this.#rows.delete(row); // many rows that are blank again would have to be passed over each time
     this.#numbers = null;
+  }
+
+  /** Have rows come to lie elsewhere, in this copy only; `move` tells where, null for those that are deleted. */
+  shift(move) {
+    const rows = [...this.#rows].map(([row, cells]) => [move(row), cells]);
+    this.#rows = new Map(rows.filter(([row]) => row !== null));
+    this.#numbers = this.#last = null;
+    this.revision += 1;
   }
 
   /** The column, or the line of a form, of a field; undefined where the workbook lacks it. */

@@ -4,7 +4,7 @@
 import { ApiError, connection, get, post } from "./api.mjs";
 import { KeptEdits, key, same } from "./kept_edits.mjs";
 import { endNotices, notice } from "./messages.mjs";
-import { Sheet, cellName } from "./sheet.mjs";
+import { Sheet, cellName, shiftRow } from "./sheet.mjs";
 import { t, tn } from "./texts.mjs";
 
 const REFUSED = new Set([400, 413, 422]);
@@ -19,7 +19,9 @@ class Store extends EventTarget {
   start = null;
   state = { version: 0, unsaved: false, save_error: "", changed_outside: false, can_undo: false, can_redo: false };
   live = new Map();
-  problems = [];
+  /** The row that is being filled in, [sheet, row], or null: its problems are shown once it is left. */
+  quiet = null;
+  #problems = [];
   /** How many problems there are besides those. */
   moreProblems = 0;
   counts = {};
@@ -156,13 +158,13 @@ class Store extends EventTarget {
       this.#tell("state");
       try {
         const { version, server } = this.state;
-        const body = { version, server, ...(group.path ? {} : { edits: group.edits, label: group.label }) };
+        const body = { version, server, ...(group.path ? (group.body ?? {}) : { edits: group.edits, label: group.label }) };
         const change = await post(group.path ?? "/api/edit", body);
         if (book !== this.#books) return;
         this.#queue.shift();
         this.#keep(group, change);
         await this.#accept(change);
-        if (group.path) this.#tellStep(group, change.cells ?? []);
+        if (group.path) this.#tellStep(group, change);
         group.resolve(true);
       } catch (error) {
         if (book === this.#books) await this.#handleFault(error, group);
@@ -183,9 +185,10 @@ class Store extends EventTarget {
     this.#kept.add(state.version, group.label, kept);
   }
 
-  #tellStep(group, cells) {
-    this.#tell("history", cells);
-    this.#tell("step", { isUndo: group.path === "/api/undo", cells });
+  #tellStep(group, { cells = [], rows = [] }) {
+    if (group.path === "/api/rows") return;
+    this.#tell("history", cells.length ? cells : rows.map(([name, at]) => [name, at, 0]));
+    this.#tell("step", { isUndo: group.path === "/api/undo", cells, rows });
   }
 
   async #handleFault(error, group) {
@@ -294,7 +297,7 @@ class Store extends EventTarget {
     const value = ([name, row, at]) => this.sheet(name)?.value(row, at);
     const isDone = group.isSent && !group.path && group.edits.every((cell) => same(value(cell), cell[3]));
     const isFree = group.before.every((cell) => same(value(cell), cell[3]) || again.isKnown(cell, value(cell)));
-    const isQueued = canSend && !isDone && isFree && !(group.path && group.isSent);
+    const isQueued = canSend && !isDone && isFree && !(group.path && (group.isSent || group.body));
     if (isQueued) {
       group.isSent = false;
       this.#put(group.edits);
@@ -322,6 +325,8 @@ class Store extends EventTarget {
   }
 
   async #accept(change) {
+    for (const [name, ...shift] of change.rows ?? []) this.#shiftRows(name, shift);
+    if (change.rows?.length) this.#kept.block(change.state.version);
     const wait = new Set(this.#queue.flatMap((group) => [...group.keys]));
     this.#put((change.cells ?? []).filter((cell) => !wait.has(key(...cell))));
     this.state = change.state;
@@ -335,6 +340,29 @@ class Store extends EventTarget {
   #put(cells) {
     for (const [name, row, at, value] of cells) this.sheet(name)?.put(row, at, value ?? null);
     if (cells.length) this.#tell("cells", cells);
+  }
+
+  /** Rows of a sheet come to lie elsewhere: what waits, live values and the selection follow. */
+  #shiftRows(name, shift) {
+    const move = (row) => shiftRow(row, shift);
+    const moved = (cells) => cells.map(([sheet, row, ...rest]) => [sheet, sheet === name ? move(row) : row, ...rest]).filter(([, row]) => row !== null);
+    this.sheet(name)?.shift(move);
+    for (const group of this.#queue) {
+      Object.assign(group, { edits: moved(group.edits), before: moved(group.before) });
+      group.keys = new Set(group.edits.map((cell) => key(...cell)));
+      if (group.body?.sheet === name) group.body.at = move(group.body.at) ?? group.body.at;
+    }
+    if (name === "Items") this.live = new Map([...this.live].map(([row, one]) => [move(row), one]));
+    this.stamp = null; // rows have other numbers: all are asked for anew
+    this.quiet = null;
+    this.#tell("rows", { sheet: name, shift, move });
+    this.#tell("cells", [[name, shift[0], 0]]);
+  }
+
+  /** Insert, delete or move rows, `{sheet, do, at, count, to}` of `POST /api/rows`, in the order of the edits. */
+  changeRows(body) {
+    endNotices(null);
+    return this.#enqueue("/api/rows", body);
   }
 
   undo() {
@@ -356,8 +384,12 @@ class Store extends EventTarget {
     const can = path === "/api/undo" ? this.state.can_undo : this.state.can_redo;
     if (!this.book || (!can && this.#queue.length === 0)) return Promise.resolve(false);
     endNotices(null);
+    return this.#enqueue(path);
+  }
+
+  #enqueue(path, body = {}) {
     return new Promise((resolve) => {
-      this.#queue.push({ path, edits: [], before: [], label: "", resolve, keys: new Set() });
+      this.#queue.push({ path, body: path === "/api/rows" ? body : null, edits: [], before: [], label: "", resolve, keys: new Set() });
       this.#send();
     });
   }
@@ -415,7 +447,7 @@ class Store extends EventTarget {
   }
 
   #takeProblems(problems) {
-    this.problems = problems;
+    this.#problems = problems;
     this.#byCell = new Map();
     for (const problem of problems) {
       const isOne = problem.row !== null && problem.row !== undefined && problem.at !== null;
@@ -429,9 +461,30 @@ class Store extends EventTarget {
     }
   }
 
+  /** The problems, the worst first, but for those of the row that is being filled in. */
+  get problems() {
+    const isQuiet = ({ sheet, row, cells }) => row !== null && this.#isQuiet(sheet, row) && (cells ?? []).every(([one]) => one === row);
+    return this.quiet ? this.#problems.filter((one) => !isQuiet(one)) : this.#problems;
+  }
+
+  #isQuiet = (sheet, row) => this.quiet !== null && this.quiet[0] === sheet && this.quiet[1] === row;
+
+  /** Show no problems of a row, `[sheet, row]`, as long as it is being filled in; null ends that. */
+  hush(row) {
+    if (!row && !this.quiet) return;
+    this.quiet = row;
+    this.#tell("problems");
+  }
+
+  /** The rows of a sheet that have an error or a warning. */
+  rowsWithProblems(name) {
+    const found = this.problems.filter((one) => one.sheet === name && one.severity !== "note" && one.row !== null);
+    return new Set(found.flatMap((one) => (one.cells?.length ? one.cells.map(([row]) => row) : [one.row])));
+  }
+
   /** The worst problem of a cell, undefined where it has none. */
   problemAt(sheet, row, at) {
-    return this.#byCell.get(key(sheet, row, at));
+    return this.#isQuiet(sheet, row) ? undefined : this.#byCell.get(key(sheet, row, at));
   }
 
   // ---- selection

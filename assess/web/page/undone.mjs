@@ -14,12 +14,13 @@ export function undoneLine(store) {
     line.textContent = text;
     timer = setTimeout(() => (line.textContent = ""), SHOWN_MS);
   };
-  store.addEventListener("step", ({ detail }) => detail.cells.length && show(describe(store, detail)));
+  store.addEventListener("step", ({ detail }) => (detail.cells.length || detail.rows.length) && show(describe(store, detail)));
   store.addEventListener("book", () => show(""));
   return line;
 }
 
-function describe(store, { isUndo, cells }) {
+function describe(store, { isUndo, cells, rows }) {
+  if (rows.length) return isUndo ? t("Undone: rows of {sheet}", { sheet: store.sheet(rows[0][0]).title }) : t("Redone: rows of {sheet}", { sheet: store.sheet(rows[0][0]).title });
   const n = cells.length;
   if (n > 1) return isUndo ? tn("Undone: {n:,} cell", "Undone: {n:,} cells", n) : tn("Redone: {n:,} cell", "Redone: {n:,} cells", n);
   const [name, row, at] = cells[0];
