@@ -8,7 +8,7 @@ import { align, distribute } from "./plan_arrange.mjs";
 import { readNumber, roundTo } from "./plan_geometry.mjs";
 import { DOOR } from "./plan_model.mjs";
 import { shownLength } from "./plan_pieces.mjs";
-import { listTools } from "./plan_toolbar.mjs";
+import { WITH_WIDTH, listTools } from "./plan_toolbar.mjs";
 import { isFilled } from "./sheet.mjs";
 import { number, t, tn } from "./texts.mjs";
 import { html, nothing, render } from "./vendor/lit-html.mjs";
@@ -18,7 +18,6 @@ const PIECE_FIELDS = ["item", ...ALL_PIECES, "x", "y", "angle_deg"];
 const PLACE_FIELDS = ["place", "kind", "x", "y"];
 const WAY_FIELDS = ["route", "segment", "start", "end", "room", "clear_width", "required_width", "occupants"];
 const WIDE = new Set(["type", "place"]);
-const WITH_WIDTH = new Set(["door", "exit"]);
 
 const button = (text, run, title = "") => html`<button type="button" title=${title} @click=${run}>${text}</button>`;
 
@@ -133,8 +132,8 @@ export class Details {
     const { row, outline } = place;
     const corners = outline ? tn("Outline with {n} corner", "Outline with {n} corners", outline.length) : t("No outline");
     const waiting = outline ? this.edits.unplacedIn(place).length : 0;
-    return html`<h2>${this.#typed ?? place.place}</h2>${this.#state("place", row)}${WITH_WIDTH.has(place.kind) ? nothing : html`<p class="muted">${corners}</p>`}
-      ${this.canEdit() ? html`${this.#fields("Places", [row], PLACE_FIELDS, WITH_WIDTH.has(place.kind) ? this.#doorWidth(place) : nothing)}
+    return html`<h2>${this.#typed ?? place.place}</h2>${this.#state("place", row)}${WITH_WIDTH.includes(place.kind) ? nothing : html`<p class="muted">${corners}</p>`}
+      ${this.canEdit() ? html`${this.#fields("Places", [row], PLACE_FIELDS, WITH_WIDTH.includes(place.kind) ? this.#doorWidth(place) : nothing)}
         <div class="buttons">
           ${waiting ? button(html`${icon("walls")}${tn("Place {n} piece along the walls", "Place {n} pieces along the walls", waiting)}`, () => this.edits.placeAlongWalls(place)) : nothing}
           ${outline ? button(t("Remove outline"), () => this.edits.outline(row, null, t("outline"))) : nothing}

@@ -159,10 +159,8 @@ export class OutlineTool extends PointsTool {
   up(point) {
     const ring = this.#rectangle(this.snap(point), point);
     if (!ring) return super.up(point);
-    this.pressed = null;
-    if (Math.min(distance(ring[0], ring[1]), distance(ring[1], ring[2])) >= LEAST_SIDE) this.#finish(ring);
-    else this.scene.sketch();
-    return null;
+    this.cancel();
+    return Math.min(distance(ring[0], ring[1]), distance(ring[1], ring[2])) >= LEAST_SIDE ? this.#finish(ring) : this.scene.sketch();
   }
 
   #finish(ring) {

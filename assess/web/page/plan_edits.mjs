@@ -197,8 +197,7 @@ export class PlanEdits {
     const ways = [...model.segments.values()].map((one) => one.outline).filter(Boolean);
     const poses = standAlongWalls(place.outline, pieces, [...others, ...ways, ...this.#doorways()]);
     const placed = new Set(poses.map((one) => one.row));
-    const done = await this.pose(poses, t("place along the walls"));
-    if (!done) return;
+    if (!(await this.pose(poses, t("place along the walls")))) return;
     if (poses.length) this.select("Items", poses.map((one) => one.row));
     const names = (all) => all.map((row) => model.text("Items", row, "item")).join(", ");
     const [left, several] = [single.filter((row) => !placed.has(row)), rows.filter((row) => !single.includes(row))];

@@ -9,7 +9,7 @@ const ROUTES_MS = 300;
 const UNKNOWN_SIZE = 0.4; // as the server draws a piece of unknown sizes [m]
 /** The width of a way or a door where none is given, as the routes assume [m]. */
 export const DOOR = 0.9;
-const KINDS = ["room", "corridor", "door", "stair", "exit"];
+export const KINDS = ["room", "corridor", "door", "stair", "exit"]; // as the workbook lists them; the first two have an outline
 const SIZES = ["breadth", "width", "height"];
 const ANCHORED = ["no", "yes", "partly", "unknown"];
 

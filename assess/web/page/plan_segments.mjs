@@ -30,8 +30,7 @@ export class WayTool extends PointsTool {
   takeBack() {
     if (!this.#from) return false;
     this.leave();
-    this.isActive = true;
-    return true;
+    return (this.isActive = true);
   }
 
   /** What lies at a point: the sign of a place, else a segment, else the room around it. */

@@ -8,7 +8,7 @@ import { number, t } from "./texts.mjs";
 
 const BUTTONS_UP_TO = 6; // floors; beyond that, or where the window is narrower, a list
 const WIDE = matchMedia("(min-width: 1200px)");
-const WITH_WIDTH = ["door", "exit"];
+export const WITH_WIDTH = ["door", "exit"];
 
 /** The tools with their names and keys. */
 export const listTools = () => [
@@ -46,9 +46,8 @@ export class Toolbar {
 
   #setWidth() {
     const metres = readNumber(this.width.value) * this.model.unit.factor;
-    const isWidth = metres > 0;
-    this.width.setAttribute("aria-invalid", String(!isWidth && this.width.value.trim() !== ""));
-    for (const name of WITH_WIDTH) this.tools[name].width = isWidth ? metres : null;
+    this.width.setAttribute("aria-invalid", String(!(metres > 0) && this.width.value.trim() !== ""));
+    for (const name of WITH_WIDTH) this.tools[name].width = metres > 0 ? metres : null;
   }
 
   #buildShown() {
@@ -80,8 +79,7 @@ export class Toolbar {
     this.#drawFloors();
     const tool = this.currentTool();
     for (const button of this.toolGroup.children) {
-      const { name } = tool;
-      button.setAttribute("aria-pressed", String(button.dataset.tool === name));
+      button.setAttribute("aria-pressed", String(button.dataset.tool === tool.name));
       const sheet = { select: "Items", measure: "Items", way: "Routes" }[button.dataset.tool] ?? "Places";
       button.disabled = !this.store.sheet(sheet)?.found;
     }

@@ -8,18 +8,17 @@ import { PlanEdits } from "./plan_edits.mjs";
 import { boxOf } from "./plan_geometry.mjs";
 import { PlanKeys, listKeys } from "./plan_keys.mjs";
 import { PieceLists, RouteLists, TypeList } from "./plan_lists.mjs";
-import { PlanModel, nameKey } from "./plan_model.mjs";
+import { KINDS, PlanModel, nameKey } from "./plan_model.mjs";
 import { Picture, PlacingTool } from "./plan_picture.mjs";
 import { PlanPointer } from "./plan_pointer.mjs";
 import { Scene } from "./plan_scene.mjs";
 import { WayTool } from "./plan_segments.mjs";
 import { SelectTool } from "./plan_select.mjs";
 import { dragFrom } from "./plan_drop.mjs";
-import { Toolbar } from "./plan_toolbar.mjs";
+import { Toolbar, WITH_WIDTH } from "./plan_toolbar.mjs";
 import { Viewport } from "./plan_viewport.mjs";
 import { t, tn } from "./texts.mjs";
 
-const KINDS = ["room", "corridor", "door", "stair", "exit"]; // as the workbook lists them; the first two have an outline
 const SWIPE_PX = 30;
 const EDITED_FROM = "(min-width: 900px)";
 const TABS = [["selected", () => t("Selected")], ["pieces", () => t("Pieces")], ["add", () => t("Add")], ["routes", () => t("Routes")], ["picture", () => t("Picture")]];
@@ -80,7 +79,7 @@ class PlanView {
     const done = () => this.setTool("select");
     const more = { ...parts, select: this.select, done };
     this.tools = { select: this.select, measure: new MeasureTool(more), way: new WayTool(more), placing: new PlacingTool(more) };
-    KINDS.forEach((name, kindAt) => (this.tools[name] = new (kindAt < 2 ? OutlineTool : PointTool)({ ...more, name, kindAt, hasWidth: name === "door" || name === "exit" })));
+    KINDS.forEach((name, kindAt) => (this.tools[name] = new (kindAt < 2 ? OutlineTool : PointTool)({ ...more, name, kindAt, hasWidth: WITH_WIDTH.includes(name) })));
     this.tool = this.select;
     this.picture = new Picture({ ...more, tool: this.tools.placing, currentTool: () => this.tool, start: () => this.setTool("placing") });
     this.select.picture = this.picture;
