@@ -193,6 +193,11 @@ def test_a_piece_that_would_block_the_way_changes_its_state(plan):
     plan.tab("routes")
     expect(plan.panel.locator(".states")).to_have_count(2)
     expect(plan.panel.locator(".states").first).to_contain_text("✕ blocked")
+    plan.page.locator("nav.tabs [data-tab=overview]").click()
+    plan.page.locator("#view-overview .states").get_by_role("button", name="Hall").click()
+    expect(plan.panel.locator(".details h2")).to_have_text("Hall")
+    expect(plan.panel.locator(".details .state-line")).to_contain_text("✕ blocked")
+    plan.tab("routes")
     plan.keyboard.press("Control+z")
     expect(plan.panel.locator(".states").first).to_contain_text("✓ open")
 

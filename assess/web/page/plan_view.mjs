@@ -31,7 +31,7 @@ export function createView(root, store) {
 class PlanView {
   #tab = "pieces";
   #views = new Map(); // floors to what was seen of them
-  #follows = true; // whether something was selected elsewhere since the plan was shown
+  #follows = "start"; // who selected something elsewhere since the plan was shown
 
   constructor(root, store) {
     Object.assign(this, { root, store });
@@ -188,7 +188,8 @@ class PlanView {
     this.isShown = true;
     this.model.loadTypes().catch(() => {});
     if (this.#follows) this.#followFloor();
-    this.#follows = false;
+    if (this.#follows === "overview" && this.store.selection.sheet === "Places") this.#tapTab("selected");
+    this.#follows = "";
     this.model.show();
     if (this.model.plan) this.#draw();
   }
@@ -278,7 +279,7 @@ class PlanView {
   }
 
   #selected(source) {
-    if (source !== "plan" && !this.isShown) this.#follows = true;
+    if (source !== "plan" && !this.isShown) this.#follows = source ?? "other";
     if (!this.model.plan) return;
     const rows = this.#ownRows();
     this.scene.pieces.select(rows);
