@@ -188,6 +188,30 @@ def test_what_is_typed_meets_a_change_from_elsewhere(small):
     expect(small.cell("Description", 3)).to_have_text("Table")
 
 
+def test_a_form_is_typed_into_line_by_line_and_keeps_what_is_typed(small):
+    small.open("Building")
+    height, period = (small.page.get_by_label(re.compile(f"^{label}")) for label in ("Height", "Period T1"))
+    height.fill("=3*4")
+    small.type("<Enter>")
+    expect(period).to_be_focused()
+    expect(height).to_have_value("12")
+    small.type("long")
+    edit_elsewhere(small, "Attic")  # the page draws anew with every answer
+    small.page.wait_for_function(
+        "async () => (await import('/store.mjs')).store.sheet('Items').value(2, 3) === 'Attic'"
+    )
+    expect(period).to_have_value("long")
+    small.type("<Enter>")
+    expect(period).to_have_attribute("aria-invalid", "true")
+    expect(small.page.locator(".form-problem.error")).to_contain_text("'long'")
+    structure = small.page.get_by_label(re.compile("^Structure"))
+    expect(structure).to_be_focused()
+    assert small.page.locator(f"#{structure.get_attribute('list')} option").count() > 2
+    small.type("<Control+z>")
+    expect(period).to_have_value("")
+    small.settle()
+
+
 def test_markup_in_a_cell_is_text(page, served_here, tmp_path):
     markup = '<img src=x onerror="document.title=1">'
     items = [ITEMS[0] | {"room": markup, "description": markup}, ITEMS[1] | {"item": markup, "axis": markup}]

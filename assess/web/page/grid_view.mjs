@@ -251,14 +251,14 @@ class GridView {
         this.#reorder();
         this.#drawChips();
       };
-      return html`<button type="button" class="sheet-chip ${css}" aria-pressed=${only.has(key)} title=${label} aria-label=${label || text} data-only=${key} @click=${click}>${text}</button>`;
+      return html`<button type="button" class="sheet-chip ${css}" aria-pressed=${only.has(key)} title=${label} aria-label=${label} data-only=${key} @click=${click}>${text}</button>`;
     };
     const pale = store.isSimulating ? "pale" : "";
     render(html`${classes.map((key) => {
       const { sign, word, css } = describe(key);
       const count = store.counts[key] ?? 0;
       return chip(key, `${css} ${pale}`, t("{word}: {n:,}", { word, n: count }), `${sign} ${number(count)}`);
-    })}${n || only.has("problems") ? chip("problems", "", "", t("With problems {n:,}", { n })) : nothing}`, this.chips);
+    })}${n || only.has("problems") ? chip("problems", "", t("With problems {n:,}", { n }), html`<span class="wide">${t("With problems {n:,}", { n })}</span><span class="narrow">▲ ${number(n)}</span>`) : nothing}`, this.chips);
   }
 
   // ---- selection

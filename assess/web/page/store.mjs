@@ -353,6 +353,8 @@ class Store extends EventTarget {
       if (group.body?.sheet === name) group.body.at = move(group.body.at) ?? group.body.at;
     }
     if (name === "Items") this.live = new Map([...this.live].map(([row, one]) => [move(row), one]));
+    const { selection } = this; // of the grid, which selects by itself, and of the plan
+    if (selection.sheet === name) this.select({ ...selection, row: move(selection.row) ?? 0, rows: selection.rows.map(move).filter(Boolean) }, "grid");
     this.stamp = null; // rows have other numbers: all are asked for anew
     this.quiet = null;
     this.#tell("rows", { sheet: name, shift, move });

@@ -117,6 +117,7 @@ class WhatIfView {
 
   #listen() {
     const { store } = this;
+    store.addEventListener("rows", ({ detail: { sheet, move } }) => sheet === "Items" && (this.#ticked = new Set([...this.#ticked].map(move).filter(Boolean))));
     store.addEventListener("book", () => {
       this.#answer = null;
       this.#ticked.clear();
