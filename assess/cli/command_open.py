@@ -3,7 +3,8 @@
 import re
 import sys
 import threading
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import fields, replace
 from importlib.util import find_spec
 from pathlib import Path
@@ -71,6 +72,14 @@ def command(
             metavar="NAME=VALUE", help="What sessions may take (docs/hosting.md); may be repeated.", show_default=False
         ),
     ] = None,
+    sessions: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Where the sessions of users stay for the next start; else they end with it.",
+            show_default=False,
+        ),
+    ] = None,
 ) -> None:
     """Open a workbook in the browser: sheets, plan, what if, simulation and reports.
 
@@ -80,15 +89,17 @@ def command(
     if missing := [name for name in PACKAGES if find_spec(name) is None]:
         raise AssessError(f"the page needs {', '.join(missing)}, which is not installed. {say_install('web')}")
     from assess.delivery.folders import private_folder
+    from assess.web.journal import take_left
     from assess.web.limits import HOSTED, OWN, PREFIX
     from assess.web.server import Place, Server, bind
 
     limits = _change_limits(HOSTED if user_header else OWN, limit or ())
-    place = Place(host, port, tuple(allowed_host or ()), user_header or "", code, limits)
+    place = Place(host, port, tuple(allowed_host or ()), user_header or "", code, limits, stays=sessions is not None)
     _check_place(place, path)
-    with bind(place) as listening, private_folder(PREFIX) as folder:
+    left = None if place.is_hosted else take_left(path)  # before it is tidied up
+    with bind(place) as listening, _hold_folder(sessions) if sessions else private_folder(PREFIX) as folder:
         server = Server(listening, place, folder, Path.cwd())
-        for remark in server.open(path) if path is not None else ():
+        for remark in server.open(path, left) if path is not None or left is not None else ():
             say(f"warning  {remark}", err=True)
         ending = server.run(interrupts.NUMBERS, lambda: _welcome(server, place, no_browser))
     for name in ending.lost:
@@ -99,6 +110,24 @@ def command(
         say(f"Stopped. All changes are saved in {ending.saved}.", err=True)
     else:
         say("Stopped.", err=True)
+
+
+@contextmanager
+def _hold_folder(folder: Path) -> Iterator[Path]:
+    """Yield the folder of sessions, which one server at a time may use; InputError where another one does."""
+    from assess.delivery.folders import FolderLock
+
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"--sessions {folder} cannot be used: {error.strerror}.") from None
+    lock = FolderLock(folder)
+    if not lock.take():
+        raise InputError(f"--sessions {folder} is in use by another server.")
+    try:
+        yield folder
+    finally:
+        lock.release()
 
 
 def _change_limits(limits: "Limits", texts: Sequence[str]) -> "Limits":
@@ -134,6 +163,8 @@ def _check_place(place: "Place", path: Path | None) -> None:
             f"--host {place.host} can be reached from other machines: add --allowed-host and --user-header of a proxy "
             "that authenticates users (docs/hosting.md), or leave out --host."
         )
+    if place.stays and not place.is_hosted:
+        raise InputError("--sessions is for several users: add --allowed-host and --user-header, or leave it out.")
     if place.is_hosted and path is not None:
         raise InputError("each user of a hosted page opens a workbook of their own: leave out the workbook.")
 

@@ -5,6 +5,7 @@ saved yet. All methods may be called from any thread.
 """
 
 import secrets
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from threading import RLock
@@ -17,6 +18,7 @@ from assess.web.cell_edits import Contents, EditsRefused, History, Step, change_
 from assess.web.columns import PageSheet, find_sheets, find_units, show
 from assess.web.disk_file import ChangedOutsideError, DiskFile, find_hash
 from assess.web.file_names import FILES, add_file, list_missing
+from assess.web.journal import Journal
 from assess.web.request_errors import CONFLICT, UNUSABLE, RequestError
 from assess.web.simulating import Simulator
 from assess.web.snapshot import Snapshot
@@ -39,9 +41,10 @@ class VersionError(RequestError):
 class Book:
     """One open workbook; made by `open_disk` or `hold`."""
 
-    def __init__(self, name: str, data: bytes, folder: Path, file: DiskFile | None) -> None:
+    def __init__(self, name: str, data: bytes, folder: Path, file: DiskFile | None, version: int = 1) -> None:
         self.name, self.folder, self._file = name, folder.resolve(), file
-        self.version = 1
+        self.version = version
+        self._journal: Journal | None = None
         self.opening, self.remark = secrets.token_hex(8), ""
         self._lock, self._saving = RLock(), RLock()  # who needs both takes the one of saving first
         self._kept, self.simulator = KeptFiles(), Simulator()
@@ -62,6 +65,44 @@ class Book:
         Raises WorkbookError if they are no workbook.
         """
         return cls(name, data, folder, None)
+
+    @classmethod
+    def restore(cls, journal: Journal) -> Self | None:
+        """Return the book that a process held which was killed: its version, history and file; None without one."""
+        if not (head := journal.read_head()):
+            return None
+        data, steps = journal.read(head)
+        file = DiskFile(Path(head["path"]), head["digest"]) if head["path"] else None
+        book = cls(head["name"], data, Path(head["files"]), file, head["version"])
+        book.opening = head["opening"]
+        acts: dict[str, Callable[..., Any]] = {
+            "edit": book.edit, "rows": book.change_rows, "undo": book.undo, "redo": book.redo,
+        }  # fmt: skip
+        saved = next((given for what, *given in reversed(steps) if what == "saved"), None)
+        for what, *given in steps:
+            if what in acts:
+                acts[what](book.version, *given)
+            elif what == "file":
+                book._note_file()
+            if saved is not None and saved[0] == book.version:
+                book._saved = book._now.workbook
+        if file is not None and saved is not None:
+            book._saved_version, file.digest = saved
+            with suppress(OSError):
+                book._data = file.path.read_bytes()
+        book._compare()
+        book._journal = journal
+        return book
+
+    def keep_in(self, journal: Journal) -> None:
+        """Have every step be written in a journal before it is answered."""
+        with self._saving, self._lock:
+            self._journal = journal
+            journal.begin(self, self._data, self._file.digest if self._file else "")
+
+    def _note(self, *step: Any) -> None:
+        if self._journal is not None:
+            self._journal.note(*step)
 
     def _take_in(self, data: bytes) -> None:
         workbook = open_workbook(data, self.name)
@@ -152,6 +193,7 @@ class Book:
             if changed:
                 self._apply(step)
                 self._history.add(step)
+                self._note("edit", edits, label)
             return self._describe_change(new)
 
     def change_rows(
@@ -175,24 +217,27 @@ class Book:
         with self._lock:
             self._check_version(version)
             self._history.add(step)
+            self._note("rows", sheet, do, at, count, to)
             return self._go(step)
 
     def undo(self, version: int) -> dict[str, Any]:
         """Take the last step back; raises VersionError if the book has another version."""
         with self._lock:
             self._check_version(version)
-            return self._go(self._history.back())
+            return self._go(self._history.back(), "undo")
 
     def redo(self, version: int) -> dict[str, Any]:
         """Do the last step again that was taken back; raises VersionError if the book has another version."""
         with self._lock:
             self._check_version(version)
-            return self._go(self._history.forward())
+            return self._go(self._history.forward(), "redo")
 
-    def _go(self, step: Step | None) -> dict[str, Any]:
+    def _go(self, step: Step | None, what: str = "") -> dict[str, Any]:
         if step is None:
             return self._describe_change({})
         self._apply(step)
+        if what:
+            self._note(what)
         inserted = [row for one in step.shifts if one.back(one.at) is None for row in range(one.at, one.at + one.count)]
         cells = self._now.workbook.sheets[step.label].cells if inserted else {}
         found = {(step.label, row, at): None for row in inserted for at in cells.get(row, ())}
@@ -275,6 +320,7 @@ class Book:
                         self._changed_outside, self._saved_version = False, now.version
                         self._saved, self._data = now.workbook, data
                         self._compare()  # more may have been edited meanwhile
+                        self._note("saved", now.version, self._file.digest)
         except ChangedOutsideError:
             with self._lock:
                 self._changed_outside = True
@@ -316,6 +362,8 @@ class Book:
             self._take_in(data)
             self._file, self._save_error, self._changed_outside = file, "", False
             self._hindrance = file.find_hindrance()
+            if self._journal is not None:
+                self.keep_in(self._journal)
 
     # ------------------------------------------------------------ the files that it names
 
@@ -331,5 +379,9 @@ class Book:
         """
         with self._lock:
             add_file(name, data, self._find_missing(anew=True), self.folder)
-            self.version += 1
-            self._now, self._missing = self._snap(self._now.workbook), None
+            self._note_file()
+            self._note("file")
+
+    def _note_file(self) -> None:
+        self.version += 1
+        self._now, self._missing = self._snap(self._now.workbook), None

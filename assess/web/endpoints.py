@@ -157,7 +157,7 @@ def _download(asked: Asked) -> Answer:
     book = asked.book
     version = book.version
     data = book.write()
-    asked.session.downloaded = version
+    asked.session.note_download(version)
     return _attach(data, WORKBOOK, book.name)
 
 

@@ -7,7 +7,7 @@ import asyncio
 import logging
 import secrets
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
@@ -42,6 +42,8 @@ AT_ONCE = ("/api/edit", "/api/rows", "/api/undo", "/api/redo", "/api/job/cancel"
 """What takes no time, and does not wait for what does."""
 MOST_WAITING = 20
 """Requests of a session that wait for their turn."""
+ASKED_EVERY = 0.2
+"""Time after which a place for a process is looked for again [s]."""
 PART = 2**20
 """Bytes that are written at once."""
 SENDING = fill("Another building model is being sent. Wait until it has been received, then try again.")
@@ -50,8 +52,8 @@ SENDING = fill("Another building model is being sent. Wait until it has been rec
 class Front:
     """Answers requests: files of the page here, all others in the process of their session. Plain ASGI."""
 
-    def __init__(self, limits: Limits) -> None:
-        self._limits = limits
+    def __init__(self, limits: Limits, users: Callable[[], Sequence[User]]) -> None:
+        self._limits, self._users = limits, users
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request."""
@@ -75,6 +77,8 @@ class Front:
             return answer_asset(found, request.headers, request.query_params.get("v", ""))
         if path not in POLLED or request.method not in READING:
             user.seen = time.monotonic()
+        elif not user.is_awake and path in user.last:
+            return _respond(user.last[path])
         async with _turn(user, path):
             call = await self._receive(request, user)
             try:
@@ -83,9 +87,11 @@ class Front:
                 if call.file:
                     Path(call.file).unlink(missing_ok=True)
         user.language = reply.language
-        response = Response(reply.data, reply.status)
-        response.raw_headers = [(name.encode("latin-1"), value.encode("latin-1")) for name, value in reply.headers]
-        return response
+        if path in POLLED and request.method in READING:
+            user.last[path] = reply
+        else:
+            user.last.clear()
+        return _respond(reply)
 
     async def _ask(self, user: User, call: Call) -> Reply:
         """Return the answer of the process of a session; one that ends meanwhile is started again, and asked again."""
@@ -110,10 +116,25 @@ class Front:
         async with user.starting:
             link = user.link
             if link is None or link.is_gone:
+                await self._make_place(user)
                 link = user.link = await user.run(user.start, user.folder)
                 with suppress(WorkerGoneError):
                     await user.run(ask_own, link, "hello")
         return link
+
+    async def _make_place(self, user: User) -> None:
+        """End the process that has been idle for longest where there are as many as may be; wait where all work."""
+        late = time.monotonic() + self._limits.wait
+        while True:
+            awake = [one for one in self._users() if one.is_awake and one is not user]
+            if len(awake) < self._limits.workers:
+                return
+            for idle in sorted((one for one in awake if not one.busy), key=lambda one: one.seen):
+                if await idle.run(idle.sleep):
+                    return
+            if time.monotonic() > late:
+                raise RequestError(fill("Too many users are at work. Try again in a moment."), UNAVAILABLE)
+            await asyncio.sleep(ASKED_EVERY)
 
     # ------------------------------------------------------------ bodies
 
@@ -206,14 +227,25 @@ async def _turn(user: User, path: str) -> AsyncIterator[None]:
     if user.waiting >= MOST_WAITING:
         raise RequestError(fill("Too many requests at once. Try again in a moment."), TOO_MANY)
     user.waiting += 1
+    user.busy += 1
     try:
         await places.acquire()
+    except BaseException:
+        user.busy -= 1
+        raise
     finally:
         user.waiting -= 1
     try:
         yield
     finally:
+        user.busy -= 1
         places.release()
+
+
+def _respond(reply: Reply) -> Response:
+    response = Response(reply.data, reply.status)
+    response.raw_headers = [(name.encode("latin-1"), value.encode("latin-1")) for name, value in reply.headers]
+    return response
 
 
 def _refuse(request: Request, user: User, error: Exception) -> Response:

@@ -16,18 +16,22 @@ from typing import Any
 import uvicorn
 
 from assess.errors import InputError
+from assess.i18n import fill
 from assess.web.connections import limit_silence
 from assess.web.front import Front
 from assess.web.guard import Guard
+from assess.web.journal import put_back
 from assess.web.limits import OWN, Limits
 from assess.web.users import ENTRANCE, Keys, User
-from assess.web.workers import Link, Process, WorkerGoneError, ask_own
+from assess.web.workers import Link, Process, WorkerGoneError, ask_own, measure_memory
 
 LOOPBACK = "127.0.0.1"
 Start = Callable[[Path, Mapping[str, Any]], Link]
 """Starts the process of a session in its folder, with its order."""
-LOOKED_EVERY = 60.0
-"""Time between two looks for sessions that have ended [s]."""
+SESSION = "session-"
+"""Beginning of the name of the folder of a session."""
+LOOKED_EVERY = 20.0
+"""Longest time between two looks for sessions that have ended, and processes that are idle [s]."""
 HTTP = 80
 GRACE = 2
 """Time that requests have to end once the server is to end [s]."""
@@ -38,7 +42,8 @@ class Place:
     """Where the server listens: at any free port for 0; and in which language, if not that of workbook or browser.
 
     `allowed` are names by which browsers reach it through a proxy, with a port where that is not the usual one;
-    `user_header` is the header in which the proxy names the user, blank on the own machine; `limits` what all may take.
+    `user_header` is the header in which the proxy names the user, blank on the own machine; `limits` what all may take;
+    `stays`: whether sessions stay on the disk, for a server that is started later.
     """
 
     host: str = LOOPBACK
@@ -47,6 +52,7 @@ class Place:
     user_header: str = ""
     language: str = ""
     limits: Limits = OWN
+    stays: bool = False
 
     @property
     def is_hosted(self) -> bool:
@@ -104,15 +110,19 @@ class Server:
         limits = place.limits
         order = {"home": "" if place.is_hosted else str(home), "limits": asdict(limits), "language": place.language,
                  "server": os.getpid()}  # fmt: skip
-        self._keys = Keys(place.user_header, self.port, lambda: User(
-            Path(tempfile.mkdtemp(prefix="session-", dir=folder)), lambda own: start(own, order)
-        ), limits)  # fmt: skip
+
+        def make(own: Path | None = None) -> User:
+            session = own or Path(tempfile.mkdtemp(prefix=SESSION, dir=folder))
+            return User(session, lambda where: start(where, order), stays=place.stays)
+
+        kept = [make(one) for one in sorted(folder.glob(f"{SESSION}*"))] if place.stays else []
+        self._keys = Keys(place.user_header, self.port, make, limits, kept=kept)
         names = (LOOPBACK, "localhost", "[::1]")
         hosts = [*(f"{name}:{self.port}" for name in names), *(names[:2] if self.port == HTTP else ())]
         schemes = ["http"]
         if place.is_hosted:
             hosts, schemes = list(place.allowed), ["http", "https"]
-        guard = Guard(Front(limits), self._keys, hosts, schemes, limits.silence)
+        guard = Guard(Front(limits, self._keys.users), self._keys, hosts, schemes, limits.silence)
         config = uvicorn.Config(guard, access_log=False, log_config=None,
                                 log_level="critical", lifespan="off", ws="none", loop="asyncio",
                                 http=limit_silence(limits.silence),
@@ -120,10 +130,17 @@ class Server:
                                 timeout_graceful_shutdown=GRACE, timeout_keep_alive=30)  # fmt: skip
         self._uvicorn = _Uvicorn(config)
 
-    def open(self, path: Path) -> list[str]:
-        """Open a workbook in the session of the own machine; return what its user should know."""
+    def open(self, path: Path | None, left: Path | None = None) -> list[str]:
+        """Open a workbook in the session of the own machine; return what its user should know.
+
+        `left`: of `assess.web.journal.take_left`; without a `path` it alone is opened, which was held.
+        """
         (user,) = self._keys.users()
+        if left is not None:
+            put_back(left, user.folder)
         user.link = user.start(user.folder)
+        if path is None:
+            return [fill("The workbook that was open when assess was ended is open again.")] if left else []
         remarks: list[str] | None = ask_own(user.link, "open", path=str(path.absolute()))["remarks"]
         if remarks is None:
             from assess.web.book import Book
@@ -166,8 +183,17 @@ class Server:
         return ending
 
     def _watch(self, ended: threading.Event) -> None:
-        while not ended.wait(LOOKED_EVERY):
-            self._keys.expire(time.monotonic())
+        limits = self._place.limits
+        while not ended.wait(min(LOOKED_EVERY, limits.sleep / 4)):
+            now = time.monotonic()
+            self._keys.expire(now)
+            users = sorted(self._keys.users(), key=lambda one: one.seen)
+            idle = [one for one in users if one.is_awake and not one.busy]
+            total = sum(measure_memory(one.link.pid) for one in users if isinstance(one.link, Process))
+            for user in idle:  # the longest idle first
+                if now - user.seen > limits.sleep or total > limits.total:
+                    own = measure_memory(user.link.pid) if isinstance(user.link, Process) else 0
+                    total -= own if user.sleep() else 0
 
     def _end(self) -> Ending:
         ending = Ending()
@@ -175,8 +201,9 @@ class Server:
             if user.link is not None:
                 with suppress(WorkerGoneError):
                     found = Ending(**ask_own(user.link, "end"))
-                    ending = Ending(found.saved or ending.saved, ending.kept + found.kept, ending.lost + found.lost)
-            user.close()
+                    lost = [] if user.stays else found.lost
+                    ending = Ending(found.saved or ending.saved, ending.kept + found.kept, ending.lost + lost)
+            user.close(forget=False)
         return ending
 
 

@@ -16,6 +16,7 @@ from assess.i18n import fill
 from assess.web.file_names import make_safe
 from assess.web.importing import FOLDER, READING, SOURCE, Import, Routes
 from assess.web.jobs import BUSY, Job
+from assess.web.journal import Journal
 from assess.web.limits import OWN, PREFIX, Limits, check_room, find_room
 from assess.web.request_errors import CONFLICT, NOT_FOUND, RequestError
 from assess.web.simulating import SECONDS
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
     from assess.web.book import Book
     from assess.web.live import LiveView
 
+DOWNLOADED = "downloaded"
+"""In the folder of a session: the version of the workbook that was downloaded last."""
 NOTE = "opened.json"
 """In the folder of a session: which workbook it has open, and the server; other servers of the same user read it."""
 
@@ -56,6 +59,10 @@ class Session:
     downloaded: int = 0
     note_edit: Callable[[], None] = lambda: None
     lock: threading.RLock = field(default_factory=threading.RLock)
+    _journal: Journal = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._journal = Journal(self.folder)
 
     def check_room(self, size: int) -> None:
         """Raise RequestError where so many bytes more are too many for one session."""
@@ -70,9 +77,9 @@ class Session:
         with self.lock:
             self.save()
             self.drop_book(kept=book.folder)
-            self.book, self.downloaded = book, book.version
-            book.simulator.limit(self._hold_place, min(self.limits.job_seconds, SECONDS))
-            threading.Thread(target=_begin, args=(book,), name="assess-begin", daemon=True).start()
+            self._set(book)
+            book.keep_in(self._journal)
+            self.note_download(book.version)
             if book.path is not None and self.folder.parent.name.startswith(PREFIX):
                 other = _find_other(self.folder, book.path)
                 note = json.dumps({"path": str(book.path.resolve()), "pid": self.server})
@@ -85,6 +92,26 @@ class Session:
                         name=book.name, pid=str(other),
                     )  # fmt: skip
         return book
+
+    def _set(self, book: "Book") -> None:
+        self.book = book
+        book.simulator.limit(self._hold_place, min(self.limits.job_seconds, SECONDS))
+        threading.Thread(target=_begin, args=(book,), name="assess-begin", daemon=True).start()
+
+    def restore(self) -> None:
+        """Open again what a process of this session held that was killed, or ended to save memory."""
+        from assess.web.book import Book
+
+        book = Book.restore(self._journal)
+        if book is not None:
+            with suppress(OSError, ValueError):
+                self.downloaded = int((self.folder / DOWNLOADED).read_text())
+            self._set(book)
+
+    def note_download(self, version: int) -> None:
+        """Note that a version was downloaded."""
+        self.downloaded = version
+        (self.folder / DOWNLOADED).write_text(str(version))
 
     def _hold_place(self) -> AbstractContextManager[object] | None:
         """Take a place among the sessions that simulate while one types."""
@@ -173,15 +200,19 @@ class Session:
         if self.book is not None:
             self.book.simulator.close()
         self.job = self.book = self.live = self.imported = None
+        self._journal.end()
         (self.folder / NOTE).unlink(missing_ok=True)
         for folder in self.folder.glob("files-*"):
             if folder.resolve() != kept:
                 shutil.rmtree(folder, ignore_errors=True)
 
     def close(self) -> None:
-        """End its job and the reading of a building model."""
+        """End what runs; the workbook stays on the disk."""
         with self.lock:
-            self.drop_book()
+            if self.job is not None:
+                self.job.close()
+            if self.book is not None:
+                self.book.simulator.close()
             if self.reading is not None:
                 self.reading.close()
 

@@ -6,26 +6,31 @@ Behind a proxy that authenticates, every user whom the proxy names has a session
 
 import asyncio
 import hmac
+import json
 import secrets
 import shutil
 import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
 from starlette.requests import HTTPConnection
 
 from assess.i18n import fill
+from assess.web.frames import Reply
 from assess.web.limits import HOSTED, Limits
 from assess.web.request_errors import TOO_MANY, RequestError
-from assess.web.workers import Link
+from assess.web.workers import Link, WorkerGoneError, ask_own
 
 ENTRANCE = "/enter"
 """The path to which the printed address leads."""
 COOKIE = "assess"
 """Beginning of the name of the cookie; browsers send cookies of a host to all its ports, so its end is the port."""
+WHO = "user.json"
+"""In the folder of a session that stays: its user, and its key."""
 LONGEST_USER = 200
 """Characters of a name that a proxy may give."""
 IN_WORK = 2
@@ -41,11 +46,14 @@ class User:
     * `seen`: when its user last asked for anything.
     * `in_work`, `at_once`: places of requests, and of those that take no time; `waiting`: how many want one.
     * `is_sending`: whether a building model is being sent: one at a time.
+    * `busy`: how many requests are in work; `last`: answers to what a page asks by itself, for when its process sleeps.
+    * `stays`: whether its folder stays on the disk, for a server that is started later.
     """
 
-    def __init__(self, folder: Path, start: Callable[[Path], Link]) -> None:
-        self.key, self.folder, self.start = secrets.token_urlsafe(32), folder, start
+    def __init__(self, folder: Path, start: Callable[[Path], Link], *, stays: bool = False) -> None:
+        self.key, self.folder, self.start, self.stays = secrets.token_urlsafe(32), folder, start, stays
         self.link: Link | None = None
+        self.busy, self.last = 0, dict[str, Reply]()
         self.language, self.seen = "", time.monotonic()
         self.in_work, self.at_once = asyncio.Semaphore(IN_WORK), asyncio.Semaphore(1)
         self.waiting, self.is_sending, self.starting = 0, False, asyncio.Lock()
@@ -55,16 +63,52 @@ class User:
         """Return what work returns, in a thread of this session."""
         return await asyncio.get_running_loop().run_in_executor(self._pool, work, *args)
 
-    def close(self) -> None:
-        """End its process and remove its folder."""
-        if self.link is not None:
-            self.link.close()
+    @property
+    def is_awake(self) -> bool:
+        """Whether its process runs."""
+        return self.link is not None and not self.link.is_gone
+
+    def sleep(self) -> bool:
+        """End its process unless something runs in it; what it holds is on the disk. Return whether it has ended."""
+        link = self.link
+        with suppress(WorkerGoneError):
+            if link is not None and not ask_own(link, "idle")["idle"]:
+                return False
+        self._end()
+        return True
+
+    def _end(self) -> None:
+        link, self.link = self.link, None
+        if link is not None:
+            link.close()
+
+    def close(self, *, forget: bool = True) -> None:
+        """End its process, and remove its folder unless that stays for a later server."""
+        self._end()
         self._pool.shutdown(wait=False)
-        shutil.rmtree(self.folder, ignore_errors=True)
+        if forget or not self.stays:
+            shutil.rmtree(self.folder, ignore_errors=True)
 
 
 def _is_same(one: str, other: str) -> bool:
     return bool(other) and hmac.compare_digest(one.encode("utf-8", "replace"), other.encode())
+
+
+def _introduce(user: User, name: str) -> None:
+    """Note whose session it is, for a server that is started later."""
+    if user.stays:
+        path = user.folder / WHO
+        path.touch(mode=0o600)
+        path.write_text(json.dumps({"user": name, "key": user.key}), encoding="utf-8")
+
+
+def _recognise(user: User) -> str:
+    """Return whose session it is, and take its key; "" where that is not known."""
+    with suppress(OSError, ValueError, KeyError, TypeError):
+        found = json.loads((user.folder / WHO).read_text(encoding="utf-8"))
+        user.key = str(found["key"])
+        return str(found["user"])
+    return ""
 
 
 class Keys:
@@ -74,10 +118,13 @@ class Keys:
     user whom a proxy names in that header has a session, and the page gets its cookie at the entrance.
     """
 
-    def __init__(self, header: str, port: int, make: Callable[[], User], limits: Limits = HOSTED) -> None:
+    def __init__(
+        self, header: str, port: int, make: Callable[[], User], limits: Limits = HOSTED, *, kept: Sequence[User] = ()
+    ) -> None:
         self.cookie, self._ticket = f"{COOKIE}-{port}", ""
         self._header, self._make, self._limits = header, make, limits
         self._users: dict[str, User] = {} if header else {"": make()}
+        self._users |= {name: user for user in kept if (name := _recognise(user))}
         self._lock = threading.Lock()
 
     def issue(self) -> str:
@@ -111,6 +158,7 @@ class Keys:
                 if len(self._users) >= self._limits.users:
                     raise RequestError(fill("Too many users have a workbook open. Try again later."), TOO_MANY)
                 self._users[user] = self._make()
+                _introduce(self._users[user], user)
             return self._users[user]
 
     def users(self) -> Sequence[User]:

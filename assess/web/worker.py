@@ -12,7 +12,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
@@ -22,7 +22,7 @@ from starlette.responses import Response
 
 from assess.delivery.deliver import saving
 from assess.errors import AssessError
-from assess.i18n import fill
+from assess.i18n import Text, fill
 from assess.processes import OUT_OF_MEMORY, limit_process
 from assess.web.endpoints import answer, refuse
 from assess.web.frames import Call, Reply, pack, read_frame, write_frame
@@ -107,12 +107,22 @@ class Worker:
         home = Path(order["home"]) if order["home"] else None
         self.session = Session(folder, home, Limits(**order["limits"]), order["language"], order["server"])
         self.is_out = False  # of memory: it has to be started again
+        self._restore()
         self._keeper = Keeper(self.session)
         self._keeper.start()
 
+    def _restore(self) -> None:
+        try:
+            self.session.restore()
+        except Exception:  # it is kept on the disk; the page begins anew
+            LOG.exception("a workbook could not be opened again")
+
     def ask(self, call: Call) -> Reply:
         """Return the answer to a request."""
-        own = {"hello": lambda _call: {}, "open": self._open, "end": self._end}.get(call.path.removeprefix(OWN))
+        known: dict[str, Callable[[Call], dict[str, Any]]] = {
+            "hello": lambda _call: {}, "idle": self._is_idle, "open": self._open, "end": self._end,
+        }  # fmt: skip
+        own = known.get(call.path.removeprefix(OWN))
         try:
             response = answer(self.session, call) if own is None else Response(json.dumps(own(call)))
         except MemoryError:
@@ -136,11 +146,28 @@ class Worker:
         """Open a workbook of the disk; return what its user should know."""
         from assess.web.book import Book
 
+        path, book = Path(call.query["path"]), self.session.book
+        remarks: list[Text | str] = []
+        if book is not None and (book.path is None or book.check_outside()):  # of a server that was killed
+            if book.state()["unsaved"] and (kept := keep_changes(book, self.session.home)):
+                remarks.append(fill(
+                    "{name} was changed by another program since assess was ended. Changes that had not been saved in "
+                    "it are kept in {kept}.", name=book.name, kept=str(kept),
+                ))  # fmt: skip
+            book = None
+        elif book is not None and book.state()["unsaved"]:
+            remarks.append(fill("Changes that had not been saved when assess was ended have been taken over."))
+            self.session.note_edit()
         try:
-            book = self.session.take(Book.open_disk(Path(call.query["path"])))
+            book = book or self.session.take(Book.open_disk(path))
         except (AssessError, OSError):
             return {"remarks": None}
-        return {"remarks": [str(one) for one in (book.remark, book.state()["save_error"]) if one]}
+        return {"remarks": [str(one) for one in (*remarks, book.remark, book.state()["save_error"]) if one]}
+
+    def _is_idle(self, _call: Call) -> dict[str, Any]:
+        """Return whether nothing runs that would be lost."""
+        job, reading = self.session.job, self.session.reading
+        return {"idle": not (job and job.is_running) and not (reading and reading.state in ("running", "done"))}
 
     def _end(self, _call: Call) -> dict[str, Any]:
         """Save, or keep changes that cannot be saved; return the fields of `Ending`."""

@@ -110,7 +110,7 @@ def test_a_name_that_comes_twice_is_not_the_proxys_and_sessions_and_their_files_
     assert keys.find(_visit("ann", ann.key)) is None
     assert keys.admit(_visit("cat")) is not None
     data = write(tmp_path / "w.xlsx").read_bytes()
-    own = Session(Path(tempfile.mkdtemp(dir=tmp_path)), limits=Limits(bytes=3 * len(data)))
+    own = Session(Path(tempfile.mkdtemp(dir=tmp_path)), limits=Limits(bytes=4 * len(data) + 1000))
     own.hold("w.xlsx", data)
     (own.folder / "more").write_bytes(data)
     (own.book.folder / "plan.png").write_bytes(data)
