@@ -98,7 +98,11 @@ class Book:
         """Have every step be written in a journal before it is answered."""
         with self._saving, self._lock:
             self._journal = journal
-            journal.begin(self, self._data, self._file.digest if self._file else "")
+            path, digest = (str(self._file.path.absolute()), self._file.digest) if self._file else ("", "")
+            journal.begin(
+                self._data, self.folder, name=self.name, path=path, digest=digest, opening=self.opening,
+                version=self.version,
+            )  # fmt: skip
 
     def _note(self, *step: Any) -> None:
         if self._journal is not None:

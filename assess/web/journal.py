@@ -11,13 +11,10 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from assess.delivery.folders import is_left, is_ours
 from assess.web.limits import PREFIX
-
-if TYPE_CHECKING:
-    from assess.web.book import Book
 
 HEAD = "book.json"
 """In the folder of a session: which workbook is open, and the names of the files that hold it and its steps."""
@@ -32,18 +29,15 @@ class Journal:
         self._folder = folder
         self._steps: Path | None = None
 
-    def begin(self, book: "Book", data: bytes, digest: str) -> None:
-        """Begin with a workbook as it was opened, or read again: its bytes, and the hash of its file."""
+    def begin(self, data: bytes, files: Path, **book: Any) -> None:
+        """Begin with a workbook as it was opened, or read again: its bytes, the folder of its files, and what it is."""
         name, before = secrets.token_hex(8), self.read_head()
         opened, steps = self._folder / f"opened-{name}", self._folder / f"steps-{name}"
         opened.write_bytes(data)
         steps.touch()
-        inside = book.folder.is_relative_to(self._folder.resolve())
-        head = {
-            "name": book.name, "path": str(book.path.absolute()) if book.path else "", "opening": book.opening,
-            "files": str(book.folder.relative_to(self._folder.resolve()) if inside else book.folder),
-            "version": book.version, "digest": digest, "opened": opened.name, "steps": steps.name,
-        }  # fmt: skip
+        own = self._folder.resolve()
+        place = str(files.relative_to(own) if files.is_relative_to(own) else files)
+        head = {**book, "files": place, "opened": opened.name, "steps": steps.name}
         part = self._folder / f"{HEAD}.part"
         part.write_text(json.dumps(head), encoding="utf-8")
         part.replace(self._folder / HEAD)
