@@ -144,13 +144,20 @@ def test_the_frame_is_one_line_the_tools_another_and_nothing_moves_when_it_tells
         expect(found.locator(STATE)).to_have_text("All changes saved")  # as the server has it
 
 
+# the page loads these when it has nothing else to do: a reload before that would get them for the first time
+LOADED = """() => Promise.all(["overview", "grid", "plan", "what_if", "simulate"]
+    .map((one) => import(`/${one}_view.mjs`))).then((all) => all.length)"""
+
+
 @browsing
 def test_a_reload_asks_for_the_files_and_gets_none_of_them_again(page, served_here, office):
     found = page(served_here(office))
     expect(found.get_by_role("grid")).to_be_visible()
     assert found.evaluate("() => document.fonts.ready.then(() => document.fonts.check('16px Plex'))")
+    assert found.evaluate(LOADED) == 5
     found.reload()
     expect(found.get_by_role("grid")).to_be_visible()
+    assert found.evaluate(LOADED) == 5
     sent = found.evaluate("""() => performance.getEntriesByType("resource")
         .filter((one) => /\\.(mjs|css|woff2)/.test(one.name)).map((one) => [one.name, one.transferSize])""")
     assert len(sent) > 30
