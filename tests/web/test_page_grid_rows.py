@@ -14,6 +14,7 @@ from tests.workbooks import ITEMS
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 NAMES = [one["item"] for one in ITEMS]
+COLOURS = "one => [getComputedStyle(one).color, getComputedStyle(one).backgroundColor]"
 
 
 def names(sheet):
@@ -189,8 +190,10 @@ def test_chips_filter_blank_sizes_show_the_catalogue_and_a_row_is_quiet_until_it
     high = sheet.page.locator(".sheet-chip[data-only=high]")
     expect(high).not_to_have_class(re.compile("pale"))
     n = int(high.inner_text().split()[-1])
+    sheet.select("Item", 20)
     high.click()
     expect(sheet.page.locator(".sheet-order")).to_contain_text("filtered by class")
+    expect(sheet.grid.locator(".grid-row:has(#grid-active) .risk")).to_contain_text("high")  # no row that is left out
     shown = sheet.grid.locator(".grid-row:not([hidden]) .risk:not(.none)").all_inner_texts()
     assert 0 < len(shown) <= n
     assert all("high" in one for one in shown)
@@ -217,6 +220,23 @@ def test_chips_filter_blank_sizes_show_the_catalogue_and_a_row_is_quiet_until_it
     button.click()
     expect(sheet.page.locator(".problems")).to_be_visible()
     assert box.bounding_box() == before
-    sheet.page.locator("[data-only=problems]").click()
+    problems = sheet.page.locator("[data-only=problems]")
+    problems.click()
     expect(sheet.cell("Item", free)).to_have_text("N1")
     sheet.keyboard.press("Escape")
+    for chip, other in ((problems, high), (high, problems)):  # under the pointer it can be read as well as away from it
+        other.hover()
+        away = chip.evaluate(COLOURS)
+        chip.hover()
+        assert chip.evaluate(COLOURS) == away
+    sheet.page.set_viewport_size({"width": 900, "height": 844})
+    expect(problems).to_have_text(re.compile("! [0-9]+$"))  # ▲ is the sign of a class next to it
+    sheet.page.set_viewport_size({"width": 390, "height": 844})
+    sheet.page.get_by_role("button", name="Show all").click()
+    sheet.select("Item", 2)
+    found = sheet.cell(CLASS, 2)
+    expect(found).to_have_text(re.compile("^[^(]+%$"))
+    assert found.evaluate("one => one.scrollWidth <= one.clientWidth")
+    sheet.page.locator(".problems").get_by_role("button", name=re.compile(f"Items!C{free}")).click()
+    about = sheet.page.locator(".sheet-about.error")
+    assert about.bounding_box()["width"] == 390  # above the line, not squeezed into it

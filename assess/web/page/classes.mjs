@@ -52,14 +52,14 @@ export function classStyle(live) {
   return [describe(live.class).css, ...marks.filter(Boolean)].join(" ");
 }
 
-/** A row's class in one text: "≈ ▲ high", then "◇ medium 20 % (15 to 26)"; a word where it has none. */
-export function classText(live) {
+/** A row's class in one text: "≈ ▲ high", then "◇ medium 20 % (15 to 26)", or without the range; a word where it has none. */
+export function classText(live, hasRange = true) {
   if (!live) return "";
   if (!live.class) return live.word ?? "";
   const { sign, word } = describe(live.class);
   if (isPale(live)) return `≈ ${sign} ${word}`;
   const state = live.basis === "unconfirmed" ? t("unconfirmed") : live.basis === "cannot_rock" ? t("cannot rock") : "";
-  return [sign, word, chanceText(live), state].filter(Boolean).join(" ");
+  return [sign, word, chanceText(hasRange ? live : { ...live, low: null }), state].filter(Boolean).join(" ");
 }
 
 /** The class with all that is known of it, for a panel or a title. */

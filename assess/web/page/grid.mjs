@@ -2,7 +2,7 @@
 // are in grid_editor.mjs, grid_pointer.mjs and grid_keys.mjs.
 
 import { clear, el } from "./elements.mjs";
-import { cellText, cellValue, classColumn, describeCell, hasChoices, isComputed, problemText } from "./grid_cells.mjs";
+import { cellText, cellValue, classColumn, describeCell, hasChoices, isClass, isComputed, problemText } from "./grid_cells.mjs";
 import { RowOrder } from "./grid_rows.mjs";
 import { Selection } from "./grid_selection.mjs";
 import { icon } from "./icons.mjs";
@@ -24,6 +24,7 @@ const NARROWEST = 44;
 const WIDEST = 340;
 const NARROW_PAGE = 600;
 const NARROW_COLUMN = 108;
+const NARROW_CLASS = 138; // without the range
 
 export class Grid extends EventTarget {
   canEdit = true;
@@ -83,7 +84,6 @@ export class Grid extends EventTarget {
   /** Build the columns anew: after another sheet. */
   refreshColumns() {
     const shown = this.sheet.columns.filter((column) => !column.hidden);
-    const isClass = (column) => column.field === "class" && column.kind === "live";
     const at = shown.findIndex(isClass);
     if (at >= 0) shown[at] = classColumn(shown[at]);
     else if (this.sheet.name === "Items") shown.splice(1, 0, classColumn());
@@ -121,7 +121,7 @@ export class Grid extends EventTarget {
   widthOf(column) {
     const kept = Number(localStorage.getItem(this.#widthKey(column)));
     const width = kept || Math.min(WIDEST, PADDING + Math.max((column.width || 10) * CHARACTER, headLength(column) * HEAD_CHARACTER));
-    return this.isNarrow && column.isFrozen ? Math.min(width, NARROW_COLUMN) : Math.max(NARROWEST, Math.round(width));
+    return this.isNarrow && column.isFrozen ? Math.min(width, isClass(column) ? NARROW_CLASS : NARROW_COLUMN) : Math.max(NARROWEST, Math.round(width));
   }
 
   setWidth(c, width) {
@@ -287,7 +287,7 @@ export class Grid extends EventTarget {
 
   #drawCell(node, r, c, number) {
     const column = this.columns[c];
-    const { text, css, problem } = describeCell(this.store, this.sheet, number, column);
+    const { text, css, problem } = describeCell(this.store, this.sheet, number, column, this.isNarrow);
     if (node.textContent !== text) node.textContent = text;
     const isActive = r === this.selection.anchor[0] && c === this.selection.anchor[1];
     const isSelected = this.selection.has(r, c);

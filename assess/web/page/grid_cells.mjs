@@ -18,6 +18,8 @@ export function showValue(value, column) {
 /** Whether nobody can type into a column. */
 export const isComputed = (column) => column.kind === "live";
 
+export const isClass = (column) => column.field === "class" && column.kind === "live";
+
 /** The one column of the class, in place of that of the file, which Excel computes by the formula; a file without it shows it, too. */
 export const classColumn = (column = {}) => ({
   at: null, field: "class", kind: "live", unit: "", choices: [], offered: [], source: "", ...column, label: t("Class"), width: CLASS_WIDTH,
@@ -27,7 +29,7 @@ export const classColumn = (column = {}) => ({
 /** What a cell holds for sorting, filtering, finding and copying. */
 export function cellValue(store, sheet, row, column) {
   if (column.kind !== "live") return sheet.value(row, column.at);
-  if (column.field === "class") return classText(store.live.get(row)) || null;
+  if (isClass(column)) return classText(store.live.get(row)) || null;
   return store.live.get(row)?.values[column.at] ?? null;
 }
 
@@ -47,7 +49,7 @@ function classRank(key) {
 /** What a column is sorted by. */
 export function sortKey(store, sheet, row, column) {
   const live = store.live.get(row);
-  if (column.field === "class" && column.kind === "live") return live?.class ? classRank(live.class) + (live.chance ?? 0) / 2 : live?.word || null;
+  if (isClass(column)) return live?.class ? classRank(live.class) + (live.chance ?? 0) / 2 : live?.word || null;
   return cellValue(store, sheet, row, column);
 }
 
@@ -68,15 +70,15 @@ function catalogueText(store, sheet, row, column) {
   return typeof value === "number" ? number(Number((value * own.factor / column.factor).toPrecision(6))) : "";
 }
 
-/** The looks of a cell: text, what stands in a blank one in grey, classes of style, and its problem if it has one. */
-export function describeCell(store, sheet, row, column) {
-  const own = cellText(store, sheet, row, column);
+/** The looks of a cell: text, what stands in a blank one in grey, classes of style, and its problem if it has one; on a phone chances without their range. */
+export function describeCell(store, sheet, row, column, isNarrow = false) {
+  const own = isNarrow && isClass(column) ? classText(store.live.get(row), false) : cellText(store, sheet, row, column);
   const text = own || catalogueText(store, sheet, row, column);
   let css = own === text ? "" : " ghost";
   if (column.kind === "number" || column.kind === "count" || (column.kind === "live" && column.field !== "class")) css += " number";
   else if (column.kind === "own" && typeof sheet.value(row, column.at) === "number") css += " number";
   if (column.kind === "live") css += " live";
-  if (column.field === "class" && column.kind === "live") css += ` risk ${classStyle(store.live.get(row))}`;
+  if (isClass(column)) css += ` risk ${classStyle(store.live.get(row))}`;
   return { text, css, problem: column.at === null ? undefined : store.problemAt(sheet.name, row, column.at) };
 }
 

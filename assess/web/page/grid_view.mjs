@@ -214,9 +214,11 @@ class GridView {
   }
 
   #reorder() {
+    const { active } = this.grid;
     this.grid.order.apply();
     this.grid.refreshColumns();
-    this.grid.selection.keepInside();
+    if (active && this.grid.order.indexOf(active.row) < 0) this.grid.selection.set([0, active.c]); // it has been filtered out
+    else this.grid.selection.keepInside();
     this.grid.box.scrollTop = 0;
     this.grid.draw();
     this.#drawOrder();
@@ -258,7 +260,7 @@ class GridView {
       const { sign, word, css } = describe(key);
       const count = store.counts[key] ?? 0;
       return chip(key, `${css} ${pale}`, t("{word}: {n:,}", { word, n: count }), `${sign} ${number(count)}`);
-    })}${n || only.has("problems") ? chip("problems", "", t("With problems {n:,}", { n }), html`<span class="wide">${t("With problems {n:,}", { n })}</span><span class="narrow">▲ ${number(n)}</span>`) : nothing}`, this.chips);
+    })}${n || only.has("problems") ? chip("problems", "", t("With problems {n:,}", { n }), html`<span class="wide">${t("With problems {n:,}", { n })}</span><span class="narrow">! ${number(n)}</span>`) : nothing}`, this.chips);
   }
 
   // ---- selection
