@@ -21,12 +21,14 @@ from urllib.parse import quote
 from starlette.responses import Response
 
 from assess.errors import AssessError
-from assess.i18n import fill, load_catalogue, speaking
+from assess.i18n import fill, gettext, load_catalogue, speaking
+from assess.report_formats import FILES
+from assess.settings import SCENARIOS
 from assess.web.assets import pack
 from assess.web.file_names import clean_name
 from assess.web.frames import Call
 from assess.web.importing import ROUTES, SOURCE
-from assess.web.jobs import REPORT, Job
+from assess.web.jobs import Run, describe_comparison, read_formats
 from assess.web.limits import MODELS, MOST_MODEL
 from assess.web.request_errors import (
     BAD_REQUEST,
@@ -43,7 +45,7 @@ from assess.web.texts import choose_language, describe_texts
 if TYPE_CHECKING:
     from assess.web.book import Book
 
-FILES = ("/api/upload", "/api/file", MODELS)
+SENT = ("/api/upload", "/api/file", MODELS)
 """Where bodies are files; all others are JSON."""
 LOOK = 1.5
 """Shortest time between two looks at whether the file was changed by another program [s]."""
@@ -79,11 +81,9 @@ class Asked:
         return self.session.book
 
     @property
-    def job(self) -> Job:
-        """The simulation of the session; RequestError where there is none."""
-        if self.session.job is None:
-            raise RequestError(fill("Nothing has been simulated yet."), NOT_FOUND)
-        return self.session.job
+    def run(self) -> Run:
+        """The run that the request names, else the latest; RequestError where there is none."""
+        return self.session.runs.find(str(self.query.get("id") or self.body.get("id") or ""))
 
     @property
     def name(self) -> str:
@@ -113,7 +113,7 @@ def _describe_book(asked: Asked) -> Answer:
 
 def _describe_state(asked: Asked) -> Answer:
     session = asked.session
-    job = session.job.summarise() if session.job else None
+    job = session.runs.latest and session.runs.latest.summarise()
     if session.book is None:
         return {"state": None, "job": job}
     if time.monotonic() - session.looked > LOOK:
@@ -233,27 +233,43 @@ def _evaluate(what: str, asked: Asked) -> Answer:
 
 
 def _describe_job(asked: Asked) -> Answer:
+    runs = asked.session.runs
+    scenarios = [(one, gettext(one)) for one in SCENARIOS]
+    job = runs.latest and runs.latest.describe(asked.session.book)
+    return {"job": job, "runs": runs.list_all(), "scenarios": scenarios}
+
+
+def _make_files(asked: Asked) -> None:
     session = asked.session
-    return {"job": session.job.describe(session.book) if session.job else None}
+    session.check_room(0)
+    session.runs.make(asked.run.id, read_formats(asked.body.get("formats")))
 
 
-def _cancel(asked: Asked) -> Answer:
-    if asked.session.job is not None:
-        asked.session.job.cancel()
-    return _describe_job(asked)
+def _compare(asked: Asked) -> Answer:
+    """Answer with what changed between two runs, or with the page of it."""
+    view = asked.session.runs.compare(*(asked.query.get(name, "-") for name in ("before", "after")))
+    if asked.query.get("as") != "page":
+        return describe_comparison(view)
+    from assess.compare.comparison_document import render_comparison
+    from assess.report.report_options import ReportOptions
+
+    return _show_page(render_comparison(view, ReportOptions(language=asked.language)).encode())
 
 
-def _find_report(asked: Asked) -> Answer:
-    """Answer with the report for a frame: its one script and its styles count, and it belongs to no address."""
-    html = asked.job.read_file(REPORT).replace(b"\r\n", b"\n")  # as browsers read it
+def _show_page(html: bytes) -> Response:
+    """Answer with a report as a page of its own: its one script and its styles count, and it belongs to no address.
+
+    A page with such a policy is shown only where it may share its window with others.
+    """
+    html = html.replace(b"\r\n", b"\n")  # as browsers read it
     scripts = re.findall(rb"<script>(.*?)</script>", html, re.DOTALL)
     hashes = (base64.b64encode(hashlib.sha256(one).digest()).decode() for one in scripts)
     allowed = " ".join(f"'sha256-{one}'" for one in hashes) or "'none'"
     policy = (
-        f"sandbox allow-scripts; default-src 'none'; script-src {allowed}; style-src 'unsafe-inline'; img-src data:; "
-        "font-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'self'"
+        f"sandbox allow-scripts allow-modals; default-src 'none'; script-src {allowed}; style-src 'unsafe-inline'; "
+        "img-src data:; font-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
     )
-    headers = {"content-security-policy": policy, "x-frame-options": "SAMEORIGIN"}
+    headers = {"content-security-policy": policy, "cross-origin-opener-policy": "unsafe-none"}
     return Response(html, media_type="text/html", headers=headers)
 
 
@@ -290,9 +306,10 @@ TABLE: tuple[tuple[str, Mapping[str, Handler]], ...] = (
         "/api/book": _describe_book,
         "/api/state": _describe_state, "/api/download": _download, "/api/live": _describe_live,
         **{f"/api/{one}": partial(_evaluate, one) for one in ("overview", "routes", "plan", "picture", "catalogue")},
-        "/api/job": _describe_job, "/api/job/report": _find_report,
+        "/api/job": _describe_job, "/api/job/compare": _compare,
+        "/api/job/report": lambda asked: _show_page(asked.run.read_file(FILES["html"])),
         "/api/job/file/{name:path}": lambda asked: _attach(
-            asked.job.read_file(asked.query["name"]), "application/octet-stream", asked.query["name"]
+            asked.run.read_file(asked.query["name"]), "application/octet-stream", asked.query["name"]
         ),
         MODELS: _describe_import,
         "/api/start": lambda asked: describe_start(asked.session.home), "/api/map": lambda _asked: describe_map(),
@@ -305,8 +322,10 @@ TABLE: tuple[tuple[str, Mapping[str, Handler]], ...] = (
         "/api/reload": _after(lambda asked: asked.book.reload(), lambda asked: asked.book.describe()),
         "/api/undo": lambda asked: _change(asked, lambda book, version: book.undo(version)),
         "/api/redo": lambda asked: _change(asked, lambda book, version: book.redo(version)),
-        "/api/job": _after(lambda asked: asked.session.simulate(asked.body), _describe_job),
-        "/api/job/cancel": _cancel,
+        "/api/job": _after(lambda asked: asked.session.begin_run(asked.body), _describe_job),
+        "/api/job/files": _after(_make_files, _describe_job),
+        "/api/job/remove": _after(lambda asked: asked.session.runs.remove(asked.run.id), _describe_job),
+        "/api/job/cancel": _after(lambda asked: asked.session.runs.close(), _describe_job),
         "/api/import/cancel": _after(lambda asked: asked.session.cancel_import(), _describe_import),
         "/api/import/open": lambda asked: asked.session.open_imported(choose_shaking(asked.body)).describe(),
         "/api/start": lambda asked: asked.session.begin(asked.body).describe(),
@@ -324,7 +343,7 @@ def answer(session: Session, call: Call) -> Response:
     with speaking(load_catalogue(language)):
         try:
             handler, named = _find_handler(call)
-            is_json = call.method == "POST" and call.path not in FILES
+            is_json = call.method == "POST" and call.path not in SENT
             file = Path(call.file) if call.file else None
             asked = Asked(session, {**call.query, **named}, {}, call.data, file, language)
             found = handler(replace(asked, body=_parse_body(asked.data)) if is_json else asked)

@@ -1,32 +1,33 @@
-"""The process of one simulation: the very calls of `assess run` on a copy of the workbook, reported line by line.
+"""The process of one run: the very calls of `assess run` on a copy of the workbook, then its files, one after another.
 
-``python -m assess.web.job_process FOLDER``: FOLDER holds ``job.json`` and ``input/``; it gets ``out/`` with the reports
-and ``summary.json``. Each line of the output is a JSON object. The process ends at once when its input is closed, as
-that is when the server has ended, however it did; the folder is then removed.
+``python -m assess.web.job_process FOLDER``: FOLDER holds ``job.json`` and ``input/``; it gets ``summary.json`` and
+``results.pickle`` as soon as the results are there, and each file in a folder of its own in ``out/``, named by its
+format. Where the results are there already, only files are made. ``job.json`` is looked at after each file: more may be
+asked for meanwhile. Each line of the output is a JSON object. The process ends at once when its input is closed, as
+that is when the server has ended, however it did; a run without results is then removed.
 """
 
 import json
 import os
+import pickle
 import shutil
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from assess.errors import AssessError, PdfUnavailableError, WorkbookError
-from assess.i18n import fill, gettext, load_catalogue, speaking
+from assess.i18n import LANGUAGES, fill, gettext, load_catalogue, speaking
 from assess.processes import limit_process
 from assess.progress import Progress, Report
 from assess.results import Results
-from assess.risk import RiskClass
 from assess.settings import Settings, count_processors
+from assess.web.overview import describe_results
 from assess.web.request_errors import describe_problem
 
-ORDER, LIMITS, INPUT, OUT, SUMMARY = "job.json", "limits.json", "input", "out", "summary.json"
-PLAIN = frozenset(("json", "csv", "xlsx"))
-"""Formats that need no series of figures."""
+ORDER, INPUT, OUT, SUMMARY, RESULTS = "job.json", "input", "out", "summary.json", "results.pickle"
 SENT_EVERY = 0.1
 """Shortest time between two reports of one stage [s]."""
 LOWER_PRIORITY = 5
@@ -48,37 +49,47 @@ def main() -> None:
 
     def end_with_server() -> None:
         sys.stdin.buffer.read()
-        shutil.rmtree(folder, ignore_errors=True)
+        if not (folder / RESULTS).is_file():
+            shutil.rmtree(folder, ignore_errors=True)
         os._exit(1)
 
     threading.Thread(target=end_with_server, name="assess-server", daemon=True).start()
     if hasattr(os, "nice"):
         os.nice(LOWER_PRIORITY)
-    order, limits = (json.loads((folder / name).read_text(encoding="utf-8")) for name in (ORDER, LIMITS))
-    limit_process(*limits)
+    order = _read_order(folder)
+    limit_process(*order["limits"])
     with speaking(load_catalogue(order["language"])):
         try:
-            send({"state": "done", **assess_workbook(folder, order, send)})
+            results = load_or_compute(folder, send)
+            while todo := [one for one in _read_order(folder)["formats"] if not (folder / OUT / one).exists()]:
+                send({"writing": todo[0]})
+                send({"written": todo[0], "message": write_file(results, folder, todo[0])})
+            send({"state": "done"})
         except AssessError as error:
             problems = list(map(describe_problem, error.problems if isinstance(error, WorkbookError) else ()))
             send({"state": "failed", "message": gettext(error.message), "problems": problems})
         except MemoryError:
-            text = fill(
-                "The simulation needs more than {n:,.0f} MB of memory, which is the limit here.", n=limits[0] / 1e6
-            )
+            most = order["limits"][0] / 1e6
+            text = fill("The run needs more than {most:,.0f} MB of memory, which is the limit here.", most=most)
             send({"state": "failed", "message": gettext(text), "problems": []})
         except OSError as error:
             send({"state": "failed", "message": error.strerror or type(error).__name__, "problems": []})
     os._exit(0)  # without waiting for anything that is still computed aside
 
 
-def assess_workbook(folder: Path, order: dict[str, Any], send: Send) -> dict[str, Any]:
-    """Assess the workbook, write reports and summary, and return messages; raises AssessError as `assess run`."""
+def _read_order(folder: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((folder / ORDER).read_text(encoding="utf-8"))
+    return found
+
+
+def load_or_compute(folder: Path, send: Send) -> Results:
+    """Return the results of a run, assessed where they are not there yet; raises AssessError as `assess run`."""
     from assess.pipeline.run import run
-    from assess.report import write_reports
-    from assess.report.report_options import ReportOptions
     from assess.workbook.read import read_inventory
 
+    if (folder / RESULTS).is_file():
+        kept: Results = pickle.loads((folder / RESULTS).read_bytes())  # noqa: S301 - our own, in a folder of our own
+        return kept
     latest, stage = 0.0, ("", "")
 
     def listen(report: Report) -> None:
@@ -86,48 +97,46 @@ def assess_workbook(folder: Path, order: dict[str, Any], send: Send) -> dict[str
         now, of = time.monotonic(), (report.stage, report.detail)
         if of != stage or now - latest >= SENT_EVERY:
             latest, stage = now, of
-            send({name: getattr(report, name) for name in ("stage", "share", "detail", "seconds_left")})
+            send({name: getattr(report, name) for name in ("stage", "share", "detail")})
 
-    progress, formats = Progress(listen), order["formats"]
-    settings = Settings(**order["settings"])
+    progress, order = Progress(listen), _read_order(folder)
     inventory = read_inventory(folder / INPUT / order["workbook"], progress=progress)
-    threads = max(1, count_processors() - 1)
-    results = run(inventory, settings, jobs=threads, figures=not set(formats) <= PLAIN, progress=progress)
-    message = ""
-    try:
-        write_reports(results, folder / OUT, formats, ReportOptions(), progress=progress)
-    except PdfUnavailableError as error:  # all other formats are there
-        message = gettext(error.message)
+    settings, threads = Settings(**order["settings"]), max(1, count_processors() - 1)
+    results = run(inventory, settings, jobs=threads, series_folder=folder, progress=progress)
+    write_file(results, folder, "json")
     (folder / SUMMARY).write_text(json.dumps(summarise(results)), encoding="utf-8")
-    return {"message": message, "problems": [describe_problem(one) for one in results.problem_rows]}
+    part = folder / f"{RESULTS}.part"
+    part.write_bytes(pickle.dumps(results))
+    part.replace(folder / RESULTS)  # last, as it tells that all is there
+    send({"found": True})
+    return results
 
 
-def summarise(results: Results) -> dict[str, Any]:
-    """Return the rows of the furniture with their classes, and what is to be expected before and after."""
-    from assess.report.words import find_range
+def write_file(results: Results, folder: Path, name: str) -> str:
+    """Write the file of a format in a folder of its own; return why there is none where a library is missing."""
+    from assess.report import write_reports
+    from assess.report.report_options import ReportOptions
 
-    rows = list(results)
-    items = {
-        "row": [one.item.row for one in rows],
-        "quantity": [one.item.quantity for one in rows],
-        "class": ["" if one.is_anchored else one.adopted.risk.name.lower() for one in rows],
-        "formula": ["" if one.is_anchored else one.formula_class.name.lower() for one in rows],
-        "chance": [one.adopted.probability for one in rows],
-        "low": [found and found[0] for found in map(find_range, rows)],
-        "high": [found and found[1] for found in map(find_range, rows)],
-        "simulated": [one.adopted.is_simulated or not one.adopted.can_rock for one in rows],
-    }
-    schedule, anchor = results.schedule, results.settings.anchor
-    names = ("falls", "falls_low", "falls_high", "anchored", "apart", "blocked_routes", "cut_off_rooms")
-    sums: dict[str, Any] = {
-        when: {
-            "counts": {risk.name.lower(): state.count(risk) for risk in RiskClass},
-            **{name: getattr(state, name) for name in names},
-        }
-        for when, state in (("before", schedule.before), ("after", schedule.after))
-    }
-    sums |= {"cost": schedule.cost, "entries": len(schedule.rows), "first": anchor if isinstance(anchor, int) else 0}
-    return {"items": items, "before_after": sums}
+    message = ""
+    (folder / OUT).mkdir(exist_ok=True)
+    part = folder / OUT / f".{name}"
+    shutil.rmtree(part, ignore_errors=True)
+    try:
+        write_reports(results, part, [name], ReportOptions())
+    except PdfUnavailableError as error:
+        message = gettext(error.message)
+    part.mkdir(exist_ok=True)
+    part.replace(folder / OUT / name)
+    return message
+
+
+def summarise(results: Results) -> Mapping[str, Any]:
+    """Return what is to be expected, in every language."""
+    found = {}
+    for code in LANGUAGES:
+        with speaking(load_catalogue(code)):
+            found[code] = describe_results(results)
+    return found
 
 
 if __name__ == "__main__":

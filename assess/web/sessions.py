@@ -15,10 +15,10 @@ from assess.errors import AssessError
 from assess.i18n import fill
 from assess.web.file_names import make_safe
 from assess.web.importing import FOLDER, READING, SOURCE, Import, Routes
-from assess.web.jobs import BUSY, Job
+from assess.web.jobs import Runs
 from assess.web.journal import Journal
 from assess.web.limits import OWN, PREFIX, Limits, check_room, find_room
-from assess.web.request_errors import CONFLICT, NOT_FOUND, RequestError
+from assess.web.request_errors import NOT_FOUND, RequestError
 from assess.web.simulating import SECONDS
 from assess.web.slots import Slots, take
 from assess.web.starting import Made, build_workbook, place_files, place_workbook
@@ -52,17 +52,17 @@ class Session:
     server: int = 0
     book: "Book | None" = None
     live: "LiveView | None" = None
-    job: Job | None = None
     reading: Import | None = None
     imported: Import | None = None
     looked: float = 0.0
     downloaded: int = 0
     note_edit: Callable[[], None] = lambda: None
     lock: threading.RLock = field(default_factory=threading.RLock)
+    runs: Runs = field(init=False)
     _journal: Journal = field(init=False)
 
     def __post_init__(self) -> None:
-        self._journal = Journal(self.folder)
+        self.runs, self._journal = Runs(self.folder, self.limits), Journal(self.folder)
 
     def check_room(self, size: int) -> None:
         """Raise RequestError where so many bytes more are too many for one session."""
@@ -172,19 +172,13 @@ class Session:
             self.reading, self.imported = None, found
             return book
 
-    def simulate(self, body: Mapping[str, Any]) -> None:
-        """Start a simulation of the open workbook; the results of an earlier one are removed."""
+    def begin_run(self, body: Mapping[str, Any]) -> None:
+        """Begin a run of the open workbook as it is."""
         with self.lock:
-            if self.job is not None and self.job.is_running:
-                raise RequestError(fill("A simulation is running already."), CONFLICT)
             if self.book is None:
                 raise RequestError(fill("No workbook is open."), NOT_FOUND)
             self.check_room(0)
-            slots = Slots(self.folder.parent, "simulations", self.limits.simulations, BUSY)
-            new = Job(self.book, body, self.folder, slots, self.limits)
-            if self.job is not None:
-                self.job.close()
-            self.job = new
+            self.runs.begin(self.book, body)
 
     def save(self) -> None:
         """Save a workbook of the disk; what stands in the way is part of its state."""
@@ -194,12 +188,11 @@ class Session:
                 book.save()
 
     def drop_book(self, kept: Path | None = None) -> None:
-        """End with the workbook and its job, and remove the files of one that was held."""
-        if self.job is not None:
-            self.job.close()
+        """End with the workbook and its runs, and remove the files of one that was held."""
         if self.book is not None:
             self.book.simulator.close()
-        self.job = self.book = self.live = self.imported = None
+        self.runs.clear()
+        self.book = self.live = self.imported = None
         self._journal.end()
         (self.folder / NOTE).unlink(missing_ok=True)
         for folder in self.folder.glob("files-*"):
@@ -207,10 +200,9 @@ class Session:
                 shutil.rmtree(folder, ignore_errors=True)
 
     def close(self) -> None:
-        """End what runs; the workbook stays on the disk."""
+        """End what runs; the workbook, and runs that have their results, are found by the next process of the session."""
         with self.lock:
-            if self.job is not None:
-                self.job.close()
+            self.runs.close()
             if self.book is not None:
                 self.book.simulator.close()
             if self.reading is not None:

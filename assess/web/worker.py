@@ -166,8 +166,8 @@ class Worker:
 
     def _is_idle(self, _call: Call) -> dict[str, Any]:
         """Return whether nothing runs that would be lost."""
-        job, reading = self.session.job, self.session.reading
-        return {"idle": not (job and job.is_running) and not (reading and reading.state in ("running", "done"))}
+        run, reading = self.session.runs.latest, self.session.reading
+        return {"idle": not (run and run.is_running) and not (reading and reading.state in ("running", "done"))}
 
     def _end(self, _call: Call) -> dict[str, Any]:
         """Save, or keep changes that cannot be saved; return the fields of `Ending`."""

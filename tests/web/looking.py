@@ -5,7 +5,7 @@ from pathlib import Path
 from playwright.sync_api import expect
 
 AXE = Path(__file__).parents[1] / "data" / "axe-core" / "axe.min.js"
-VIEWS = ("overview", "sheet", "plan", "what-if", "simulate", "start")
+VIEWS = ("overview", "sheet", "plan", "what-if", "results", "start")
 GRAVE = ("serious", "critical")
 OF_COLOURS = ("color-contrast", "link-in-text-block")
 """Rules about colours: what is to be looked at again in another theme, in which all else is the same."""

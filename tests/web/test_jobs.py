@@ -1,20 +1,24 @@
 """The simulation of a session, on a running server: its results, its end, and what is left of it."""
 
-import io
 import json
 import os
 import signal
 import subprocess
 import sys
-import zipfile
+from collections import Counter
 from pathlib import Path
 
 import pytest
 
-from assess.web.jobs import list_stale
+from assess.compare.changes import compare
+from assess.compare.comparison_document import View
+from assess.compare.past_run import read_run
+from assess.web.jobs import MOST_RUNS, Runs
+from assess.web.limits import OWN
+from assess.web.live import CLASSES
 from tests.waiting import wait_until
 from tests.web.model_reader import find_worker, is_gone, linux
-from tests.web.opened import write_one_floor
+from tests.web.opened import hold, write_one_floor
 from tests.web.serving import list_named, start, wait_for_job
 from tests.workbooks import write
 
@@ -40,14 +44,6 @@ def _list_left(server):
     return list_named(server.folder.parent / "tmp", "job-")
 
 
-def _find_end(row, key, end):
-    """Return an end of the range of a row: of what is not known on assumed motion, else of the sampling interval."""
-    found, adopted = row["verification"], row["adopted"]
-    if adopted["method"] != "housner_monte_carlo" or found["if_slower"] is None:
-        return adopted[key]
-    return end(found["if_slower"], found["if_faster"], adopted["probability"])
-
-
 @pytest.mark.slow
 def test_results_are_those_of_the_command(served_here, tmp_path, monkeypatch):
     """Byte for byte: the same calls on a copy of the same bytes."""
@@ -63,77 +59,129 @@ def test_results_are_those_of_the_command(served_here, tmp_path, monkeypatch):
         cwd=tmp_path, check=True, capture_output=True,
     )  # fmt: skip
     job = wait_for_job(client)
-    assert (job["state"], job["message"], job["is_old"], job["stale"]) == ("done", "", False, [])
-    names = [one["name"] for one in job["files"]]
-    assert names == ["items.csv", "report.xlsx", "results.json", "report.zip"]
-    files = {name: client.get(f"/api/job/file/{name}").data for name in names}
-    assert {name for name in names[:-1] if files[name] != (out / name).read_bytes()} == set()
-    with zipfile.ZipFile(io.BytesIO(files["report.zip"])) as archive:
-        assert {name: archive.read(name) for name in archive.namelist()} == {name: files[name] for name in names[:-1]}
+    assert (job["state"], job["message"], job["is_old"]) == ("done", "", False)
+    there = {one["name"]: one["state"] for one in job["files"]}
+    assert {name for name, state in there.items() if state == "there"} == {"items.csv", "report.xlsx", "results.json"}
+    files = {name: client.get(f"/api/job/file/{name}").data for name in there if there[name]}
+    assert {name for name in ("items.csv", "report.xlsx") if files[name] != (out / name).read_bytes()} == set()
+    assert _read_numbers(files["results.json"]) == _read_numbers((out / "results.json").read_bytes())
+    assert client.get("/api/job/file/report.pdf").status == 404
+    found, results = job["found"], json.loads(files["results.json"])
+    rows = [row for row in results["items"] if not row["anchor"]["counts_as_anchored"]]
+    simulated = [row for row in rows if row["adopted"]["basis"] in ("simulated", "cannot rock")]
+    pieces = Counter({row["adopted"]["class"].replace(" ", "_"): 0 for row in simulated})
+    for row in simulated:
+        pieces[row["adopted"]["class"].replace(" ", "_")] += row["quantity"]
+    assert pieces == Counter({name: n for name, n in found["counts"].items() if n and name in CLASSES})
+    falls = sum(row["adopted"]["probability"] * row["quantity"] for row in simulated)
+    assert found["falls"][0] == pytest.approx(falls)
+    assert found["counts"]["formula"] == sum(r["quantity"] for r in rows if r["adopted"]["basis"] == "formula")
+    assert sum(found["counts"].values()) == sum(row["quantity"] for row in results["items"])
 
-    rows = json.loads(files["results.json"])["items"]
-    assert job["items"]["row"] == [2, 3, 4, 5, 6]
-    assert any(job["items"]["simulated"])
-    for key, end in (("low", min), ("high", max)):
-        assert job["items"][key] == [_find_end(row, key, end) for row in rows]
-    assert job["items"]["chance"] == pytest.approx([row["adopted"]["probability"] for row in rows])
-    classes = [one.replace("_", " ") for one in job["items"]["class"]]
-    assert classes == ["" if row["anchor"]["counts_as_anchored"] else row["adopted"]["class"] for row in rows]
-    live = client.get("/api/live").json()["items"]
-    shown = dict(zip(live["row"], live["class"], strict=True))
-    free = zip(job["items"]["row"], classes, strict=True)
-    assert job["items"]["formula"] == [shown[row] if risk else "" for row, risk in free]
-    sums = job["before_after"]
-    assert sums["before"]["falls"] > sums["after"]["falls"]
-    pieces = {
-        sum([*sums[side]["counts"].values(), sums[side]["anchored"], sums[side]["apart"]])
-        for side in ("before", "after")
-    }
-    assert pieces == {sum(job["items"]["quantity"])}
+
+def _read_numbers(data):
+    """Return results without the list of the files that were made with them, which a run makes one after another."""
+    found = json.loads(data)
+    del found["assess"]["files"]
+    return found
 
 
 @pytest.mark.slow
-def test_a_job_ends_with_its_files_is_found_again_and_rows_that_changed_since_are_stale(running):
-    asked = {"verify": "none", "formats": ["html"]}
-    assert running.client.post("/api/job", asked).json()["job"]["state"] == "running"
-    assert running.client.post("/api/job", asked).status == 409
-    job = wait_for_job(running.client)
+def test_files_are_made_of_a_run_when_they_are_asked_for_and_it_is_old_once_the_workbook_is_another(running):
+    client = running.client
+    assert client.post("/api/job", {"verify": "none", "formats": ["json"]}).json()["job"]["state"] == "running"
+    assert client.post("/api/job", {"verify": "none"}).status == 409
+    job = wait_for_job(client)
     assert job["state"] == "done"
-    assert running.client.get("/api/state").json()["job"]["id"] == job["id"]
-    report = running.client.get("/api/job/report")
+    assert client.get("/api/state").json()["job"]["id"] == job["id"]
+    assert client.get("/api/job/report").status == 404
+    asked = {"id": job["id"], "formats": ["html", "csv"]}
+    assert client.post("/api/job/files", asked).json()["job"]["state"] == "running"
+    shares = list[float]()
+
+    def look():
+        now = client.get("/api/job").json()["job"]
+        shares.append(now["share"])
+        return now
+
+    again = wait_until(look, lambda now: now["state"] != "running")
+    assert shares == sorted(shares), "it never begins again"
+    assert again["id"] == job["id"]
+    assert {one["format"] for one in again["files"] if one["state"] == "there"} == {"html", "csv", "json"}
+    report = client.get(f"/api/job/report?id={job['id']}")
     policy = report.headers["content-security-policy"]
-    assert policy.startswith("sandbox allow-scripts; default-src 'none'; script-src 'sha256-")
-    assert "frame-ancestors 'self'" in policy
-    assert report.headers["x-frame-options"] == "SAMEORIGIN"
-    assert running.client.get("/api/job/file/report.html").headers["content-disposition"].startswith("attachment")
-    assert running.client.get("/api/job/file/report.pdf").status == 404
-    book = running.client.get("/api/book").json()
+    assert policy.startswith("sandbox allow-scripts allow-modals; default-src 'none'; script-src 'sha256-")
+    assert "frame-ancestors 'none'" in policy
+    assert client.get("/api/job/file/report.html").headers["content-disposition"].startswith("attachment")
+    for asked in ({"formats": ["npz"]}, {"formats": []}, {"id": "0123", "formats": ["pdf"]}):
+        assert client.post("/api/job/files", asked).status in (404, 422), asked
+    book = client.get("/api/book").json()
     columns = {one["field"]: one["at"] for one in book["sheets"][2]["columns"]}
-    edits = [["Items", 2, columns["breadth"], 31], ["Items", 3, columns["notes"], "by the door"]]
-    version = running.client.post("/api/edit", {"version": book["version"], "edits": edits}).json()["state"]["version"]
-    now = running.client.get("/api/job").json()["job"]
-    assert (now["id"], now["is_old"], now["stale"]) == (job["id"], True, [2])
-    running.client.post("/api/undo", {"version": version})
-    assert running.client.get("/api/job").json()["job"]["stale"] == []
+    edits = [["Items", 3, columns["notes"], "by the door"]]
+    version = client.post("/api/edit", {"version": book["version"], "edits": edits}).json()["state"]["version"]
+    assert client.get("/api/job").json()["job"]["is_old"]
+    client.post("/api/undo", {"version": version})
+    assert not client.get("/api/job").json()["job"]["is_old"]
 
 
-def test_floors_and_the_building_make_all_rows_stale(example_inventory):
-    from dataclasses import replace
+@pytest.mark.slow
+def test_runs_are_kept_compared_and_removed(running):
+    """A comparison is that of the command, in its words."""
+    client, book = running.client, running.client.get("/api/book").json()
+    for one in client.get("/api/job").json()["runs"]:
+        client.post("/api/job/remove", {"id": one["id"]})
+    columns = {one["field"]: one["at"] for one in book["sheets"][2]["columns"]}
+    ids = []
+    for height in (None, 90):
+        if height:
+            edits = [["Items", 2, columns["height"], height]]
+            change = client.post("/api/edit", {"version": book["version"], "edits": edits}).json()
+            book["version"] = change["state"]["version"]
+        client.post("/api/job", {"verify": "none", "formats": ["json"]})
+        ids.append(wait_for_job(client)["id"])
+    client.post("/api/undo", {"version": book["version"]})
+    runs = client.get("/api/job").json()["runs"]
+    assert [one["id"] for one in runs] == ids[::-1]
+    assert len({one["outcome"] for one in runs}) == 2
+    found = client.get(f"/api/job/compare?before={ids[0]}&after={ids[1]}").json()
+    folders = [running.folder.parent / "compared" / one for one in ids]
+    for folder, one in zip(folders, ids, strict=True):
+        folder.mkdir(parents=True)
+        (folder / "results.json").write_bytes(client.get(f"/api/job/file/results.json?id={one}").data)
+    view = View(compare(*map(read_run, folders)))
+    assert found["headline"] == view.headline
+    assert found["pieces"][0][0] == "A1"
+    assert found["pieces"][0][-1] == "Height: 200 → 90 cm"
+    assert found["tone"] == "better"
+    assert {row[0] for row in found["counts"]} >= {"expected falls"}
+    page = client.get(f"/api/job/compare?before={ids[0]}&after={ids[1]}&as=page")
+    assert b"<h1" in page.data
+    assert page.headers["content-security-policy"].startswith("sandbox")
+    assert client.get(f"/api/job/compare?before={ids[0]}&after=x").status == 404
+    client.post("/api/job/remove", {"id": ids[0]})
+    assert [one["id"] for one in client.get("/api/job").json()["runs"]] == ids[1:]
+    assert len(_list_left(running)) == 1
 
-    def change_floor(**changes):
-        first, *others = example_inventory.floors
-        return replace(example_inventory, floors=(replace(first, **changes), *others))
 
-    rows = [one.row for one in example_inventory.items]
-    building = example_inventory.building
-    assert list_stale(example_inventory, example_inventory) == []
-    assert list_stale(example_inventory, replace(example_inventory, items=example_inventory.items[1:])) == rows[:1]
-    assert list_stale(example_inventory, change_floor(name="Attic")) == []
-    assert list_stale(example_inventory, change_floor(pfa={"X": 1.0})) == rows
-    assert list_stale(example_inventory, replace(example_inventory, building=replace(building, client="B"))) == []
-    for change in ({"friction": 0.2}, {"structure": "walls"}, {"ground_pgv": 0.3}, {"period": 0.9}):
-        changed = replace(example_inventory, building=replace(building, **change))
-        assert list_stale(example_inventory, changed) == rows, change
+def test_the_oldest_runs_go_first_and_those_of_an_earlier_process_are_found(tmp_path):
+    for n in range(MOST_RUNS + 2):
+        folder = tmp_path / "session" / f"job-{n:02}"
+        folder.mkdir(parents=True)
+        order = {"version": n, "time": f"2026-01-{n + 1:02}", "settings": {}}
+        (folder / "job.json").write_text(json.dumps(order), encoding="utf-8")
+        if n:  # the first has no results
+            (folder / "results.pickle").write_bytes(b"")
+            (folder / "summary.json").write_text('{"en": {"outcome": "one"}}', encoding="utf-8")
+    runs = Runs(tmp_path / "session", OWN)
+    assert runs.latest is not None
+    assert runs.latest.id == f"{MOST_RUNS + 1:02}"
+    book = hold(write(tmp_path / "w.xlsx"))
+    runs.begin(book, {"verify": "none", "formats": ["json"]})
+    book.simulator.close()
+    kept = [one["version"] for one in runs.list_all()]
+    assert kept == list(range(MOST_RUNS + 1, 2, -1)), "the new one has no results yet"
+    runs.close()
+    assert [one["version"] for one in Runs(tmp_path / "session", OWN).list_all()] == kept
 
 
 def test_what_cannot_be_asked_for_is_refused(running):
@@ -158,7 +206,7 @@ def test_cancelling_ends_the_process_and_leaves_nothing(served, tmp_path):
     server.client.post("/api/job", LONG)
     wait_until(lambda: server.client.get("/api/job").json()["job"]["stage"], bool)
     job = server.client.post("/api/job/cancel").json()["job"]
-    assert (job["state"], job["files"]) == ("cancelled", [])
+    assert (job["state"], {one["state"] for one in job["files"]}) == ("cancelled", {""})
     wait_until(lambda: _list_left(server), lambda left: left == [])
     if Path("/proc/self/task").is_dir():
         assert find_worker(server, b"job_process") == 0

@@ -7,6 +7,7 @@ import pytest
 from assess.web.book import Book
 from assess.web.file_names import list_present
 from assess.web.jobs import prepare
+from assess.web.limits import OWN
 from assess.workbook.template import Content, write_workbook
 from tests.motion.grids import EPICENTRE
 from tests.workbooks import RECORDS, write
@@ -37,7 +38,7 @@ def test_a_job_works_with_the_uncertainties_that_lie_beside_it(book, tmp_path):
         shutil.copy(file, tmp_path / "own")
     snapshot = book.snapshot()
     assert list(list_present(snapshot.workbook, snapshot.sheets, snapshot.files)) == ["grid.xml", "uncertainty.xml"]
-    prepare(book, {"formats": ["json"]}, tmp_path / "job")
+    prepare(book, {"formats": ["json"]}, tmp_path / "job", OWN)
     assert sorted(one.name for one in (tmp_path / "job").rglob("*.xml")) == ["grid.xml", "uncertainty.xml"]
 
 

@@ -97,7 +97,7 @@ def test_every_view_is_accessible_and_asks_no_other_server(page, served_here, ex
     assert [one for one in addresses if not one.startswith((server.base + "/", "data:", "blob:"))] == []
 
 
-CONTENT = {"sheet": ".sheet-panel", "plan": ".plan-main", "what-if": ".what-if-main", "simulate": ".page-like"}
+CONTENT = {"sheet": ".sheet-panel", "plan": ".plan-main", "what-if": ".what-if-main", "results": ".page-like"}
 """What begins below the header and the tools of a view."""
 CUT_OFF = """() => [...document.querySelectorAll("header, header *, [role=toolbar], .sheet-bar, .what-if-banner")]
     .filter((one) => one.checkVisibility() && !one.closest("#menu, .book-name, .unseen"))
@@ -406,7 +406,7 @@ def test_a_view_that_fails_leaves_the_others(page, served_here, office):
     found.reload()
     show(found, "what-if")
     expect(found.locator("#view-what-if").get_by_role("alert")).to_contain_text("other views work")
-    show(found, "simulate")
+    show(found, "results")
     expect(found.get_by_role("button", name="Start the run")).to_be_enabled()
     assert [one for one in found.errors if "broken" not in one] == []
     found.errors.clear()

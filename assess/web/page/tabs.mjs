@@ -11,7 +11,7 @@ const TABS = [
   ["sheet", () => t("Sheet"), () => import("./grid_view.mjs")],
   ["plan", () => t("Plan"), () => import("./plan_view.mjs")],
   ["what-if", () => t("What if"), () => import("./what_if_view.mjs")],
-  ["simulate", () => t("Results"), () => import("./simulate_view.mjs")],
+  ["results", () => t("Results"), () => import("./results_view.mjs")],
 ];
 const IMPORT = ["import", () => t("What was imported"), () => import("./import_view.mjs")];
 const START = ["start", () => t("Start"), () => import("./start_view.mjs")];
