@@ -200,7 +200,7 @@ class Session:
                 shutil.rmtree(folder, ignore_errors=True)
 
     def close(self) -> None:
-        """End what runs; the workbook, and runs that have their results, are found by the next process of the session."""
+        """End what runs; the workbook, and runs with results, are found by the next process of the session."""
         with self.lock:
             self.runs.close()
             if self.book is not None:
