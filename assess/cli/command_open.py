@@ -29,6 +29,7 @@ EXAMPLES = (
     "assess open",
     "assess open building.xlsx --port 8100 --no-browser --language it",
     "assess open --host 10.0.0.5 --port 8100 --allowed-host assess.example.org --user-header X-Remote-User",
+    "assess open --host 10.0.0.5 --sessions /var/lib/assess --limit users=20",
 )
 PACKAGES = ("starlette", "uvicorn")
 HOST = re.compile(r"(?:[A-Za-z0-9](?:[A-Za-z0-9.-]{0,252})|\[[0-9A-Fa-f:.]{2,45}\])(?::\d{1,5})?")
