@@ -4,14 +4,13 @@ import { badge, chanceText, classDetail, isPale } from "./classes.mjs";
 import { fixButtons } from "./fixes.mjs";
 import { icon } from "./icons.mjs";
 import { ask } from "./messages.mjs";
-import { align, distribute } from "./plan_arrange.mjs";
-import { readNumber, roundTo } from "./plan_geometry.mjs";
-import { DOOR } from "./plan_model.mjs";
-import { shownLength } from "./plan_pieces.mjs";
-import { WITH_WIDTH, listTools } from "./plan_toolbar.mjs";
+import { align, distance, distribute, readNumber, roundTo } from "./plan_geometry.mjs";
+import { Section } from "./plan_lists.mjs";
+import { DOOR, stateCss } from "./plan_model.mjs";
+import { TOOLS, WITH_WIDTH } from "./plan_toolbar.mjs";
 import { isFilled } from "./sheet.mjs";
 import { number, t, tn } from "./texts.mjs";
-import { html, nothing, render } from "./vendor/lit-html.mjs";
+import { html, nothing } from "./vendor/lit-html.mjs";
 
 const ALL_PIECES = ["floor", "room", "type", "breadth", "width", "height", "anchored", "against_wall"];
 const PIECE_FIELDS = ["item", ...ALL_PIECES, "x", "y", "angle_deg"];
@@ -21,16 +20,13 @@ const WIDE = new Set(["type", "place"]);
 
 const button = (text, run, title = "") => html`<button type="button" title=${title} @click=${run}>${text}</button>`;
 
-export class Details {
+export class Details extends Section {
   #shown = "";
   #typed = null; // a name while it is typed
 
-  /** @param {{model, store, scene, edits, canEdit, remove, keys, currentTool}} parts */
   constructor(parts) {
-    Object.assign(this, parts);
-    this.node = document.createElement("section");
-    this.node.className = "plan-section details";
-    this.node.setAttribute("aria-label", t("Selected"));
+    super(parts, t("Selected"));
+    this.node.classList.add("details");
   }
 
   draw() {
@@ -41,7 +37,7 @@ export class Details {
       this.#commit();
       this.#typed = null;
     }
-    render(this.#content(), this.node);
+    super.draw();
     for (const field of this.node.querySelectorAll("[data-shown]")) this.#fillIn(field);
   }
 
@@ -58,10 +54,10 @@ export class Details {
     field.was = shown;
   }
 
-  #content() {
+  content() {
     const { model, store: { selection } } = this;
     const tool = this.currentTool();
-    if (tool.kindAt !== undefined || tool.name === "way") return html`<h2>${listTools().find(([name]) => name === tool.name)[1]}</h2><p class="muted">${tool.help()}</p>`;
+    if (tool.kindAt !== undefined || tool.name === "way") return html`<h2>${TOOLS.find(([name]) => name === tool.name)[2]()}</h2><p class="muted">${tool.help()}</p>`;
     const pieces = selection.sheet === "Items" ? selection.rows.filter((row) => model.pieces.has(row)) : [];
     if (pieces.length === 1) return this.#piece(pieces[0]);
     if (pieces.length > 1) return this.#several(pieces);
@@ -125,7 +121,7 @@ export class Details {
 
   #state(kind, row) {
     const state = this.model.stateOf(kind, row);
-    return state ? html`<p class="state-line state-${state.standing ? "standing" : state.state.replace("_", "-")}${this.model.routesOld ? " old" : ""}"><b>${state.word}</b> ${state.detail}</p>` : nothing;
+    return state ? html`<p class="state-line ${stateCss(state)}${this.model.routesOld ? " old" : ""}"><b>${state.word}</b> ${state.detail}</p>` : nothing;
   }
 
   #place(place) {
@@ -136,7 +132,7 @@ export class Details {
       ${this.canEdit() ? html`${this.#fields("Places", [row], PLACE_FIELDS, WITH_WIDTH.includes(place.kind) ? this.#doorWidth(place) : nothing)}
         <div class="buttons">
           ${waiting ? button(html`${icon("walls")}${tn("Place {n} piece along the walls", "Place {n} pieces along the walls", waiting)}`, () => this.edits.placeAlongWalls(place)) : nothing}
-          ${outline ? button(t("Remove outline"), () => this.edits.outline(row, null, t("outline"))) : nothing}
+          ${outline ? button(t("Remove outline"), () => this.edits.changePlace(row, { outline: null }, t("outline"))) : nothing}
           ${button(t("Delete…"), () => this.#delete("Places", row, place.place))}${button(t("Show in the sheet"), () => this.#reveal("Places", row))}</div>
         ${outline ? html`<p class="hint">${t("Drag its corners; drag the middle of a side to add one; double-click a corner to remove it.")}</p>` : nothing}` : nothing}`;
   }
@@ -156,10 +152,9 @@ export class Details {
   }
 
   #way(one) {
-    const length = one.points.length === 2 ? Math.hypot(one.points[1][0] - one.points[0][0], one.points[1][1] - one.points[0][1]) : null;
     const name = `${one.route}, ${one.segment}`;
     return html`<h2>${name}</h2>${this.#state("segment", one.row)}
-      <p class="muted">${length === null ? t("A place of it has no X and Y.") : t("Length {length}", { length: shownLength(length, this.model.unit) })}</p>
+      <p class="muted">${one.points.length ? t("Length {length}", { length: this.model.shownLength(distance(...one.points)) }) : t("A place of it has no X and Y.")}</p>
       ${this.canEdit() ? html`${this.#fields("Routes", [one.row], WAY_FIELDS)}<div class="buttons">
         ${button(t("Delete…"), () => this.#delete("Routes", one.row, name))}${button(t("Show in the sheet"), () => this.#reveal("Routes", one.row))}</div>` : nothing}`;
   }

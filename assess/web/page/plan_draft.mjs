@@ -1,24 +1,23 @@
-// Tools that take points one after the other: what they share, measure, draw rooms and corridors, doors, stairs and exits.
+// Tools that take points one after the other: measure; draw rooms, corridors, doors, stairs, exits and the ways between them.
 
-import { distance, roundTo } from "./plan_geometry.mjs";
-import { DOOR } from "./plan_model.mjs";
+import { ask } from "./messages.mjs";
+import { distance, footOn, isInside, lineOf, middle, nearest, nearestWall, rectangle, roundTo } from "./plan_geometry.mjs";
+import { DOOR, isPlaced, nameKey } from "./plan_model.mjs";
 import { isDrag } from "./plan_pointer.mjs";
-import { nearestWall, sidesOf } from "./plan_snap.mjs";
-import { shownLength } from "./plan_pieces.mjs";
-import { t } from "./texts.mjs";
+import { t, tn } from "./texts.mjs";
 
 const CLOSE_PX = 10;
 const STEP = 0.1; // of the cross-hair [m]
 const FINE = 0.01;
 const CROSS_PX = 14;
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+export const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const LEAST_SIDE = 0.3; // of a rectangle [m]
 const WALL_PX = 24; // within which a door goes to a wall
+const SIGN_PX = 14; // within which a click means the sign of a place
+const LINE_PX = 8; // within which it means the middle of a segment
+const MISSED_PX = 40; // up to which the pointer goes before what it missed is forgotten
 
-/**
- * What all of them share: a point follows the pointer, a press and release at the same place sets it. By keys a cross-hair
- * is moved, and Enter sets the point.
- */
+/** A point follows the pointer, a press and release sets it; by keys a cross-hair is moved, and Enter sets the point. */
 export class PointsTool {
   takesTouch = true;
   points = [];
@@ -38,9 +37,14 @@ export class PointsTool {
   }
 
   leave() {
-    this.points = [];
     this.isActive = false;
-    this.pressed = this.cursor = null;
+    this.cursor = null;
+    this.clear();
+  }
+
+  clear() {
+    this.points = [];
+    this.pressed = null;
     this.scene.sketch();
   }
 
@@ -62,6 +66,10 @@ export class PointsTool {
     const from = this.pressed;
     this.pressed = null;
     if (from && isDrag(from.px, point.px) && this.dragsToo) this.add(this.snap(from), from);
+    this.#set(point);
+  }
+
+  #set(point) {
     this.add(this.snap(point), point);
     if (this.isActive) this.draw(this.snap(point), point);
   }
@@ -70,18 +78,17 @@ export class PointsTool {
     return this.select.snapDrawn(point, this.points.at(-1) ?? null);
   }
 
-  /** Arrow keys move the cross-hair, Enter sets a point there. Escape takes the points back, and where there are none, leaves the tool. */
+  /** Escape takes the points back, and where there are none, leaves the tool. */
   key(event) {
     if (event.ctrlKey || event.metaKey || event.altKey) return false;
     if (event.key in ARROWS) return this.#step(ARROWS[event.key], event.shiftKey ? FINE : STEP), true;
-    if (event.key === "Enter" && this.cursor) return this.#set(), true;
+    if (event.key === "Enter" && this.cursor) return this.#set(this.#aim()), true;
     return event.key === "Escape" && this.takeBack();
   }
 
   takeBack() {
     if (this.points.length === 0) return false;
-    this.points = [];
-    this.scene.sketch();
+    this.clear();
     return true;
   }
 
@@ -91,9 +98,7 @@ export class PointsTool {
     this.viewport.reveal(this.cursor);
     const found = this.snap(this.#aim());
     this.draw(found, this.#aim());
-    const { unit } = this.model;
-    const place = found.place ? `; ${found.place.place}` : "";
-    this.say(t("X {x}, Y {y}", { x: shownLength(this.cursor[0], unit), y: shownLength(this.cursor[1], unit) }) + place);
+    this.say(this.model.shownAt(this.cursor) + (found.place ? `; ${found.place.place}` : ""));
   }
 
   /** The cross-hair as a point of the pointer; it stands where it was moved to, so nothing snaps. */
@@ -101,20 +106,11 @@ export class PointsTool {
     return { at: this.cursor, px: this.viewport.toScreen(this.cursor), target: this.viewport.svg, alt: true };
   }
 
-  #set() {
-    const aim = this.#aim();
-    this.add(this.snap(aim), aim);
-    if (this.cursor) this.draw(this.snap(aim), aim);
-  }
-
-  guides(found) {
-    return [...found.guides.map((points) => ({ name: "guide", points })), ...this.cross()];
-  }
-
-  cross() {
-    if (!this.cursor) return [];
-    const [[x, y], r] = [this.cursor, CROSS_PX / this.viewport.scale];
-    return [{ name: "cross-hair", points: [[x - r, y], [x + r, y]] }, { name: "cross-hair", points: [[x, y - r], [x, y + r]] }];
+  /** Draw lines and texts, with the cross-hair. */
+  sketch(lines, texts, guides) {
+    const [[x, y], r] = [this.cursor ?? [], CROSS_PX / this.viewport.scale];
+    const cross = this.cursor ? [[[x - r, y], [x + r, y]], [[x, y - r], [x, y + r]]] : [];
+    this.scene.sketch([...lines, ...cross.map((points) => ({ name: "cross-hair", points }))], texts, guides);
   }
 }
 
@@ -126,20 +122,19 @@ export class MeasureTool extends PointsTool {
     return t("Measure: click two points.");
   }
 
+  #length = (ends) => this.model.shownLength(distance(...ends), 3);
+
   add({ point }) {
     if (this.points.length === 2) this.points = [];
     this.points.push(point);
-    if (this.points.length === 2) this.say(t("Length {length}", { length: shownLength(distance(...this.points), this.model.unit, 3) }));
+    if (this.points.length === 2) this.say(t("Length {length}", { length: this.#length(this.points) }));
   }
 
-  draw(found) {
-    const ends = this.points.length === 2 ? this.points : [...this.points, found.point];
-    if (ends.length < 2) {
-      this.scene.sketch(this.guides(found));
-      return;
-    }
-    const text = shownLength(distance(...ends), this.model.unit, 3);
-    this.scene.sketch([{ name: "measured", points: ends, dots: true }, ...(this.points.length === 2 ? [] : this.guides(found))], [{ at: [(ends[0][0] + ends[1][0]) / 2, (ends[0][1] + ends[1][1]) / 2], text }]);
+  draw({ point, guides }) {
+    const isDone = this.points.length === 2;
+    const ends = isDone ? this.points : [...this.points, point];
+    if (ends.length < 2) this.sketch([], [], guides);
+    else this.sketch([{ name: "measured", points: ends, dots: true }], [{ at: middle(...ends), text: this.#length(ends) }], isDone ? [] : guides);
   }
 }
 
@@ -152,20 +147,18 @@ export class OutlineTool extends PointsTool {
   /** While the mouse is held: the corners of the rectangle from where it was pressed. */
   #rectangle(found, { px }) {
     if (!this.pressed || this.points.length || !isDrag(this.pressed.px, px)) return null;
-    const [[a, b], [c, d]] = [this.snap(this.pressed).point, found.point];
-    return [[a, b], [c, b], [c, d], [a, d]];
+    return rectangle(this.snap(this.pressed).point, found.point);
   }
 
   up(point) {
     const ring = this.#rectangle(this.snap(point), point);
     if (!ring) return super.up(point);
-    this.cancel();
-    return Math.min(distance(ring[0], ring[1]), distance(ring[1], ring[2])) >= LEAST_SIDE ? this.#finish(ring) : this.scene.sketch();
+    this.clear();
+    return Math.min(distance(ring[0], ring[1]), distance(ring[1], ring[2])) >= LEAST_SIDE && this.#finish(ring);
   }
 
   #finish(ring) {
-    this.points = [];
-    this.scene.sketch();
+    this.clear();
     this.edits.addPlace(this.kindAt, ring);
     this.done();
   }
@@ -173,30 +166,27 @@ export class OutlineTool extends PointsTool {
   add({ point }, raw) {
     const [first] = this.points;
     const isLast = this.cursor && this.points.length && distance(this.points.at(-1), raw.at) <= FINE / 2; // Enter twice
-    if (this.points.length >= 3 && (isLast || distance(first, raw.at) * this.viewport.scale < CLOSE_PX)) this.close();
+    if (this.points.length >= 3 && (isLast || distance(first, raw.at) * this.viewport.scale < CLOSE_PX)) this.double();
     else if (!this.points.length || distance(this.points.at(-1), point) > 0.02) this.points.push(point);
   }
 
   double() {
-    this.close();
-  }
-
-  close() {
     if (this.points.length >= 3) this.#finish(this.points);
   }
 
   key(event) {
-    if (event.key === "Enter" && this.points.length && !this.cursor) return this.close(), true;
+    if (event.key === "Enter" && this.points.length && !this.cursor) return this.double(), true;
     if (event.key === "Backspace" && this.points.length) return this.points.pop(), true;
     return super.key(event);
   }
 
-  draw(found, point) {
+  draw({ point, guides }, raw) {
     const before = this.points.at(-1);
-    const ring = this.#rectangle(found, point);
-    const length = (a, b) => shownLength(distance(a, b), this.model.unit);
-    const text = ring ? `${length(ring[0], ring[1])} × ${length(ring[1], ring[2])}` : before && length(before, found.point);
-    this.scene.sketch([{ name: "drawn", points: ring ?? [...this.points, found.point], dots: true, isClosed: Boolean(ring) || this.points.length > 1 }, ...this.guides(found)], text ? [{ at: found.point, text }] : []);
+    const ring = this.#rectangle({ point }, raw);
+    const length = (a, b) => this.model.shownLength(distance(a, b));
+    const text = ring ? `${length(ring[0], ring[1])} × ${length(ring[1], ring[2])}` : before && length(before, point);
+    const points = ring ?? [...this.points, point];
+    this.sketch([{ name: "drawn", points, dots: true, isClosed: points.length > 2 }], text ? [{ at: point, text }] : [], guides);
   }
 }
 
@@ -209,8 +199,7 @@ export class PointTool extends PointsTool {
   }
 
   snap(point) {
-    const walls = [...this.model.places.values()].filter((one) => one.outline).flatMap((one) => sidesOf(one.outline));
-    const wall = this.hasWidth && !point.alt ? nearestWall(point.at, walls, WALL_PX / this.viewport.scale) : null;
+    const wall = this.hasWidth && !point.alt ? nearestWall(point.at, this.model.walls, WALL_PX / this.viewport.scale) : null;
     return wall ? { point: wall.point, guides: [[wall.a, wall.b]], wall } : super.snap(point);
   }
 
@@ -219,9 +208,101 @@ export class PointTool extends PointsTool {
     this.done();
   }
 
-  draw({ point: [x, y], wall, ...found }) {
-    const half = (this.width ?? DOOR) / 2;
-    const [dx, dy] = wall && this.hasWidth ? wall.d.map((one) => one * half) : [0, 0];
-    this.scene.sketch([...this.guides(found), { name: "drawn door", points: [[x - dx, y - dy], [x + dx, y + dy]], dots: true }]);
+  draw({ point: [x, y], wall, guides }) {
+    const [dx, dy] = (wall?.d ?? [0, 0]).map((one) => (one * (this.width ?? DOOR)) / 2);
+    this.sketch([{ name: "drawn door", points: [[x - dx, y - dy], [x + dx, y + dy]], dots: true }], [], guides);
+  }
+}
+
+/** Ways, the segments of routes, from place to place; a click on one splits it where another begins or ends. */
+export class WayTool extends PointsTool {
+  name = "way";
+  route = "";
+  #from = null;
+  #missed = null;
+
+  help() {
+    return t("Click a room, corridor, door, stair or exit, then the next: each click adds a way. A click on a way splits it. Escape leaves.");
+  }
+
+  enter() {
+    if (!this.route.trim()) this.nextRoute();
+    super.enter();
+  }
+
+  leave() {
+    this.#from = this.#missed = null;
+    super.leave();
+  }
+
+  takeBack() {
+    if (!this.#from) return false;
+    this.leave();
+    return (this.isActive = true);
+  }
+
+  /** What lies at a point: the sign of a place, else a segment, else the room around it. */
+  snap({ target, at }) {
+    const { model, viewport: { scale } } = this;
+    const places = [...model.places.values()];
+    const sign = nearest(places.filter(isPlaced).map((place) => ({ place, off: distance([place.x, place.y], at) })), SIGN_PX / scale);
+    if (sign) return { point: at, place: sign.place };
+    const lines = this.scene.showsRoutes ? [...model.segments.values()].filter((one) => one.points.length === 2) : [];
+    const found = nearest(lines.map((segment) => ({ segment, ...footOn(at, lineOf(...segment.points)) })), LINE_PX / scale);
+    const row = Number(target.closest?.("[data-place]")?.dataset.place ?? 0);
+    const place = model.places.get(row) ?? model.outlined.find((one) => isInside(at, one.outline)) ?? null;
+    return { point: found?.point ?? at, segment: found?.segment, place };
+  }
+
+  add({ point, place, segment }) {
+    this.#missed = null;
+    if (segment) this.#offerSplit(segment, point, place);
+    else if (place && isPlaced(place)) this.#connect(place);
+    else {
+      const text = place ? t("{place} has no X and Y yet: fill them in first.", { place: place.place }) : t("Click a room, corridor, door, stair or exit.");
+      this.#missed = { at: point, text };
+      this.say(text);
+    }
+  }
+
+  #connect(place) {
+    const from = this.#from;
+    this.#from = place;
+    this.say(t("From {place}", { place: place.place }));
+    if (from && from.row !== place.row) this.edits.addSegment(this.route.trim() || this.nextRoute(), from, place);
+  }
+
+  async #offerSplit(segment, point, place) {
+    const question = [t("Split {way} here? It becomes two ways with a junction between them.", { way: `${segment.route}, ${segment.segment}` }), this.#keptPieces(segment)];
+    const room = place && isPlaced(place) ? [[place.place, "room"]] : [];
+    const answer = await ask(question.filter(Boolean).join(" "), [[t("Split it here"), "split"], ...room, [t("Cancel"), null]]);
+    this.viewport.svg.focus({ preventScroll: true });
+    const chosen = answer === "split" ? this.edits.splitSegment(segment.row, point) : answer === "room" ? place : null;
+    if (chosen) this.#connect(chosen);
+  }
+
+  /** Pieces that name the segment in the sheet stay with its first part: that is said. */
+  #keptPieces(segment) {
+    const isOwn = (row) => ["route", "segment"].every((field) => nameKey(this.model.text("Items", row, field)) === nameKey(segment[field]));
+    const n = (this.store.sheet("Items")?.rowNumbers ?? []).filter(isOwn).length;
+    return n ? tn("{n} piece that names it in the sheet Items stays with the first part.", "{n} pieces that name it in the sheet Items stay with the first part.", n) : "";
+  }
+
+  /** The first name for a route that is free. */
+  nextRoute() {
+    const names = new Set(this.store.sheet("Routes").names("route"));
+    for (let n = 1; ; n++) {
+      const name = t("Route {n}", { n });
+      if (!names.has(name)) return (this.route = name);
+    }
+  }
+
+  draw({ point, place, segment }) {
+    const end = segment ? point : place && isPlaced(place) ? [place.x, place.y] : null;
+    const lines = end ? [{ name: "drawn", points: [end, end], dots: true }] : [];
+    if (this.#from) lines.push({ name: "drawn", points: [[this.#from.x, this.#from.y], end ?? point] });
+    if (this.#missed && distance(this.#missed.at, point) * this.viewport.scale > MISSED_PX) this.#missed = null;
+    const text = segment ? t("Split {way}", { way: segment.segment }) : place?.place;
+    this.sketch(lines, this.#missed ? [this.#missed] : end ? [{ at: end, text }] : []);
   }
 }

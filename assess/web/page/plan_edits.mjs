@@ -1,9 +1,7 @@
 // What gestures on the plan write into the workbook. Every function is one edit, so one step of undo.
 
-import { standAlongWalls } from "./plan_arrange.mjs";
-import { axisOf, corners, direction, inUnit, pointInside, roundTo, wholeAngle, writeOutline } from "./plan_geometry.mjs";
-import { DOOR, nameKey } from "./plan_model.mjs";
-import { nearestWall, sidesOf } from "./plan_snap.mjs";
+import { axisOf, corners, direction, inUnit, nearestWall, pointInside, roundTo, standAlongWalls, wholeAngle, writeOutline } from "./plan_geometry.mjs";
+import { DOOR, isPlaced, nameKey } from "./plan_model.mjs";
 import { isFilled, nextName } from "./sheet.mjs";
 import { notice } from "./messages.mjs";
 import { t, tn } from "./texts.mjs";
@@ -11,35 +9,36 @@ import { t, tn } from "./texts.mjs";
 const CENTIMETRE = 0.01;
 const MILLIMETRE = 0.001;
 const UNMOVED = 0.0005;
-const ANCHORED_YES = 1;
 const CORRIDOR = 1;
 const POINTS = new Set(["door", "stair", "exit"]);
+const LENGTHS = new Set(["x", "y", "clear_width", "plan_left", "plan_bottom", "plan_width"]);
 
 export class PlanEdits {
-  constructor(model, store) {
+  constructor({ model, store }) {
     Object.assign(this, { model, store });
   }
 
   // ---- cells
 
-  /** A cell to edit: none where the workbook lacks the column. */
-  cell(sheetName, row, field, value) {
-    const column = this.store.sheet(sheetName)?.column(field);
-    return column ? [[sheetName, row, column.at, value]] : [];
-  }
-
-  /** A length in metres for a cell. */
-  length(sheetName, row, field, metres, step = CENTIMETRE) {
-    const column = this.store.sheet(sheetName)?.column(field);
-    return column ? [[sheetName, row, column.at, metres === null ? null : inUnit(metres, column, step)]] : [];
-  }
-
-  #choice(sheetName, field, at) {
-    return this.store.sheet(sheetName)?.column(field)?.choices[at] ?? null;
+  /** The cells of a row by their fields, lengths in metres; none where the workbook lacks the column, or for undefined. */
+  #cells(sheetName, row, values, step = CENTIMETRE) {
+    return Object.entries(values).flatMap(([field, value]) => {
+      const column = this.store.sheet(sheetName)?.column(field);
+      if (!column || value === undefined) return [];
+      const isLength = LENGTHS.has(field) && value !== null;
+      return [[sheetName, row, column.at, isLength ? inUnit(value, column, step) : Array.isArray(value) ? writeOutline(value, column) : value]];
+    });
   }
 
   #edit(edits, label) {
     return edits.length ? this.store.edit(edits, label) : Promise.resolve(true);
+  }
+
+  /** Fill in a new row, which is selected then. */
+  #addRow(sheetName, row, values, label) {
+    const done = this.#edit(this.#cells(sheetName, row, { floor: this.model.floorValue, ...values }), label);
+    this.select(sheetName, [row]);
+    return done;
   }
 
   #freeRow(name) {
@@ -52,11 +51,8 @@ export class PlanEdits {
     return row;
   }
 
-  /** Empty the cells of a row that somebody filled. */
-  #clearRow(name, row) {
-    const sheet = this.store.sheet(name);
-    return sheet.columns.filter((column) => column.kind !== "live" && isFilled(sheet.value(row, column.at))).map((column) => [name, row, column.at, null]);
-  }
+  /** The columns of a row that somebody filled. */
+  #filled = (sheet, row) => sheet.columns.filter((column) => column.kind !== "live" && isFilled(sheet.value(row, column.at)));
 
   select(sheet, rows) {
     const column = this.store.sheet(sheet)?.columns[0];
@@ -69,99 +65,73 @@ export class PlanEdits {
   pose(poses, label) {
     const edits = poses.flatMap(({ row, x, y, angle }) => {
       const old = this.model.pieces.get(row);
-      const moved = (value, before) => value !== undefined && (!old || Math.abs(value - before) > UNMOVED);
-      return [
-        ...(moved(x, old?.x) ? this.length("Items", row, "x", x) : []),
-        ...(moved(y, old?.y) ? this.length("Items", row, "y", y) : []),
-        ...(angle !== undefined && (!old || wholeAngle(angle) !== old.angle) ? this.#turned(row, old, wholeAngle(angle)) : []),
-      ];
+      const moved = (value, before) => (value !== undefined && (!old || Math.abs(value - before) > UNMOVED) ? value : undefined);
+      const isTurned = angle !== undefined && (!old || wholeAngle(angle) !== old.angle);
+      const turned = isTurned ? this.#turned(row, old, wholeAngle(angle)) : {};
+      return this.#cells("Items", row, { x: moved(x, old?.x), y: moved(y, old?.y), ...turned });
     });
     return this.#edit(edits, label);
   }
 
   /** A new angle. An Axis that agreed with the angle before follows it, so that the two do not contradict each other. */
   #turned(row, old, angle) {
-    const edits = this.cell("Items", row, "angle_deg", angle);
-    const column = this.store.sheet("Items").column("axis");
-    const typed = column ? this.store.sheet("Items").value(row, column.at) : null;
-    if (!isFilled(typed) || !old) return edits;
+    const typed = this.model.value("Items", row, "axis");
+    if (!isFilled(typed) || !old) return { angle_deg: angle };
+    const { choices } = this.store.sheet("Items").column("axis");
     const [before, after] = [axisOf(old.angle), axisOf(angle)];
-    if (before < 0 || after < 0 || column.choices[before] !== typed) return edits;
-    return [...edits, ...this.cell("Items", row, "axis", column.choices[after])];
+    const follows = before >= 0 && after >= 0 && choices[before] === typed;
+    return { angle_deg: angle, axis: follows ? choices[after] : undefined };
   }
 
-  move(rows, [dx, dy], label = t("move")) {
+  move(rows, [dx, dy]) {
     const poses = rows.map((row) => this.model.pieces.get(row)).filter(Boolean)
-      .map((one) => ({ row: one.row, x: dx ? roundTo(one.x + dx, CENTIMETRE) : one.x, y: dy ? roundTo(one.y + dy, CENTIMETRE) : one.y }));
-    return this.pose(poses, label);
+      .map(({ row, x, y }) => ({ row, x: dx ? roundTo(x + dx, CENTIMETRE) : x, y: dy ? roundTo(y + dy, CENTIMETRE) : y }));
+    return this.pose(poses, t("move"));
   }
 
   turn(rows, degrees) {
-    const poses = rows.map((row) => this.model.pieces.get(row)).filter(Boolean).map((one) => ({ row: one.row, angle: one.angle + degrees }));
+    const poses = rows.map((row) => this.model.pieces.get(row)).filter(Boolean).map(({ row, angle }) => ({ row, angle: angle + degrees }));
     return this.pose(poses, t("turn"));
   }
 
-  /** Put pieces that are in the list onto the plan. */
+  /** Put a piece that is in the list onto the plan. */
   place(row, [x, y]) {
-    const sheet = this.store.sheet("Items");
-    const floor = sheet.column("floor");
-    const other = floor && nameKey(sheet.value(row, floor.at)) !== nameKey(this.model.floor);
-    const edits = [...this.length("Items", row, "x", x), ...this.length("Items", row, "y", y), ...(other ? this.cell("Items", row, "floor", this.model.floorValue) : [])];
+    const floor = this.model.isHere("Items", row) ? undefined : this.model.floorValue;
     this.select("Items", [row]);
-    return this.#edit(edits, t("place on the plan"));
+    return this.#edit(this.#cells("Items", row, { x, y, floor }), t("place on the plan"));
   }
 
   takeOff(rows) {
-    const edits = rows.flatMap((row) => [...this.cell("Items", row, "x", null), ...this.cell("Items", row, "y", null)]);
-    return this.#edit(edits, t("take off the plan"));
+    return this.#edit(rows.flatMap((row) => this.#cells("Items", row, { x: null, y: null })), t("take off the plan"));
   }
 
-  deleteRows(sheet, rows) {
-    return this.#edit(rows.flatMap((row) => this.#clearRow(sheet, row)), t("delete"));
+  deleteRows(name, rows) {
+    const sheet = this.store.sheet(name);
+    return this.#edit(rows.flatMap((row) => this.#filled(sheet, row).map((column) => [name, row, column.at, null])), t("delete"));
   }
 
-  /** The item that new pieces are named after: the last of the floor, else the last of all. */
-  #lastName() {
+  /** The name of a new piece: after the last item of the floor, else the last of all. */
+  #newItem() {
     const sheet = this.store.sheet("Items");
-    const item = sheet.column("item");
-    const floor = sheet.column("floor");
-    const named = sheet.rowNumbers.filter((row) => isFilled(sheet.value(row, item.at)));
-    const own = floor ? named.filter((row) => nameKey(sheet.value(row, floor.at)) === nameKey(this.model.floor)) : [];
-    const row = own.at(-1) ?? named.at(-1);
-    return row === undefined ? null : sheet.value(row, item.at);
+    const named = sheet.rowNumbers.filter((row) => this.model.text("Items", row, "item"));
+    const row = named.findLast((one) => this.model.isHere("Items", one)) ?? named.at(-1);
+    return row === undefined ? "A1" : nextName(this.model.value("Items", row, "item"), sheet.names("item"));
   }
 
   /** Add a piece of a type of the catalogue at a point. */
-  add(type, [x, y], angle = 0) {
+  add(type, [x, y]) {
     const row = this.#freeRow("Items");
-    if (row === null) return Promise.resolve(false);
-    const names = this.store.sheet("Items").names("item");
-    const last = this.#lastName();
-    const name = last === null ? "A1" : nextName(last, names);
-    const edits = [
-      ...this.cell("Items", row, "item", name), ...this.cell("Items", row, "floor", this.model.floorValue), ...this.cell("Items", row, "type", type),
-      ...this.length("Items", row, "x", x), ...this.length("Items", row, "y", y), ...this.cell("Items", row, "angle_deg", wholeAngle(angle)),
-    ];
-    const done = this.#edit(edits, t("add"));
-    this.select("Items", [row]);
-    return done;
+    return row === null ? null : this.#addRow("Items", row, { item: this.#newItem(), type, x, y, angle_deg: 0 }, t("add"));
   }
 
-  /**
-   * Copies of pieces, in the first free rows, with names of their own.
-   * @param {number[]} rows those that are copied
-   * @param {number[]} shift by which the copies stand apart
-   */
-  copy(rows, [dx, dy]) {
+  /** Copies of pieces, moved by a shift, in the first free rows, with names of their own. */
+  copy(rows, shift) {
     const sheet = this.store.sheet("Items");
     const [names, edits, made] = [sheet.names("item"), [], []];
     let free = this.#freeRow("Items");
     for (const row of rows.filter((one) => sheet.isUsed(one))) {
       if (free === null || (sheet.capacity && free > sheet.capacity)) break;
-      for (const column of sheet.columns) {
-        const value = sheet.value(row, column.at);
-        if (column.kind !== "live" && isFilled(value)) edits.push(["Items", free, column.at, this.#copied(column, value, names, [dx, dy])]);
-      }
+      for (const column of this.#filled(sheet, row)) edits.push(["Items", free, column.at, this.#copied(column, sheet.value(row, column.at), names, shift)]);
       made.push(free);
       free += 1;
     }
@@ -170,13 +140,10 @@ export class PlanEdits {
     return done;
   }
 
-  #copied(column, value, names, [dx, dy]) {
-    if (column.field === "item") {
-      names.push(nextName(value, names));
-      return names.at(-1);
-    }
+  #copied(column, value, names, [x, y]) {
+    if (column.field === "item") return names[names.push(nextName(value, names)) - 1];
     if (column.field === "floor") return this.model.floorValue;
-    const shift = { x: dx, y: dy }[column.field];
+    const shift = { x, y }[column.field];
     return shift && typeof value === "number" ? inUnit(value * column.factor + shift, column) : value;
   }
 
@@ -191,16 +158,16 @@ export class PlanEdits {
     await model.loadTypes().catch(() => {});
     const rows = this.unplacedIn(place);
     const single = rows.filter((row) => !(model.length("Items", row, "quantity") > 1));
-    const axis = this.store.sheet("Items").column("axis");
-    const pieces = single.map((row) => ({ row, ...model.sizeOf(row), axis: axis ? axis.choices.indexOf(model.text("Items", row, "axis")) : -1 }));
+    const axes = this.store.sheet("Items").column("axis")?.choices ?? [];
+    const pieces = single.map((row) => ({ row, ...model.sizeOf(row), axis: axes.indexOf(model.text("Items", row, "axis")) }));
     const others = [...model.pieces.values()].map(corners);
     const ways = [...model.segments.values()].map((one) => one.outline).filter(Boolean);
     const poses = standAlongWalls(place.outline, pieces, [...others, ...ways, ...this.#doorways()]);
-    const placed = new Set(poses.map((one) => one.row));
+    const placed = poses.map((one) => one.row);
     if (!(await this.pose(poses, t("place along the walls")))) return;
-    if (poses.length) this.select("Items", poses.map((one) => one.row));
+    if (poses.length) this.select("Items", placed);
     const names = (all) => all.map((row) => model.text("Items", row, "item")).join(", ");
-    const [left, several] = [single.filter((row) => !placed.has(row)), rows.filter((row) => !single.includes(row))];
+    const [left, several] = [single.filter((row) => !placed.includes(row)), rows.filter((row) => !single.includes(row))];
     const text = [
       poses.length && tn("{n} piece placed along the walls of {room}.", "{n} pieces placed along the walls of {room}.", poses.length, { room: place.place }),
       left.length && t("No room along the walls for {items}.", { items: names(left) }),
@@ -212,10 +179,10 @@ export class PlanEdits {
 
   /** What doors, stairs and exits on walls need to be free on both sides. */
   #doorways() {
-    const { model } = this;
-    const walls = [...model.places.values()].filter((one) => one.outline).flatMap((one) => sidesOf(one.outline));
-    return [...model.places.values()].filter((one) => POINTS.has(one.kind) && one.x !== null && one.y !== null).map(({ x, y, ...one }) => {
-      const width = model.widthOf(one) ?? DOOR;
+    const { model, model: { walls } } = this;
+    return [...model.places.values()].filter((one) => POINTS.has(one.kind) && isPlaced(one)).map((place) => {
+      const { x, y } = place;
+      const width = model.widthOf(place) ?? DOOR;
       const wall = nearestWall([x, y], walls, DOOR / 2);
       return corners({ x, y, angle: wall ? direction([0, 0], wall.d) + 90 : 0, breadth: 2 * width, width: wall ? width : 2 * width });
     });
@@ -223,49 +190,46 @@ export class PlanEdits {
 
   // ---- places and segments
 
+  /** The name and kind of a new place. */
+  #newPlace(kindAt) {
+    const sheet = this.store.sheet("Places");
+    const kind = sheet.column("kind")?.choices[kindAt] ?? null;
+    return { place: nextName(`${this.model.floor} ${kind ?? ""}`.trim() + " 0", sheet.names("place")), kind };
+  }
+
   /** Add a place: a ring of corners, or a point; the width of a door is kept until a way leads through it. */
-  addPlace(kindAt, ring, point, width = null) {
+  addPlace(kindAt, outline, point, width = null) {
     const row = this.#freeRow("Places");
     if (row === null) return null;
-    const sheet = this.store.sheet("Places");
-    const kind = this.#choice("Places", "kind", kindAt);
-    const [x, y] = point ?? pointInside(ring);
-    const column = sheet.column("outline");
-    const stem = `${this.model.floor} ${kind ?? ""}`.trim();
-    const edits = [
-      ...this.cell("Places", row, "place", nextName(`${stem} 0`, sheet.names("place"))), ...this.cell("Places", row, "floor", this.model.floorValue),
-      ...this.length("Places", row, "x", x), ...this.length("Places", row, "y", y), ...this.cell("Places", row, "kind", kind),
-      ...(ring && column ? this.cell("Places", row, "outline", writeOutline(ring, column)) : []),
-    ];
+    const [x, y] = point ?? pointInside(outline);
     this.model.doorWidths.set(row, width);
-    const done = this.#edit(edits, t("draw a place"));
-    this.select("Places", [row]);
-    return done;
+    return this.#addRow("Places", row, { ...this.#newPlace(kindAt), x, y, outline: outline ?? undefined }, t("draw a place"));
   }
 
   /** The width of a door is the clear width of the ways through it. */
   doorWidth(place, width) {
     this.model.doorWidths.set(place.row, width);
-    return this.#edit(this.model.waysAt(place).flatMap((one) => this.length("Routes", one.row, "clear_width", width)), t("width of a door"));
+    return this.#edit(this.model.waysAt(place).flatMap((one) => this.#cells("Routes", one.row, { clear_width: width })), t("width of a door"));
   }
 
-  outline(row, ring, label = t("outline")) {
-    const column = this.store.sheet("Places").column("outline");
-    return this.#edit(this.cell("Places", row, "outline", ring ? writeOutline(ring, column) : null), label);
-  }
-
-  movePlace(row, [x, y]) {
-    return this.#edit([...this.length("Places", row, "x", x), ...this.length("Places", row, "y", y)], t("move"));
+  /** Another outline of a place, or another point. */
+  changePlace(row, values, label) {
+    return this.#edit(this.#cells("Places", row, values), label);
   }
 
   /** Another name for a place, also where segments name it. */
   renamePlace(row, name) {
-    const sheet = this.store.sheet("Places");
-    const old = nameKey(sheet.value(row, sheet.column("place").at));
-    const routes = this.store.sheet("Routes");
-    const named = ["start", "end"].map((field) => routes?.column(field)).filter(Boolean).flatMap((column) =>
-      routes.rowNumbers.filter((one) => nameKey(routes.value(one, column.at)) === old).map((one) => ["Routes", one, column.at, name]));
-    return this.#edit([...this.cell("Places", row, "place", name), ...(name && old ? named : [])], t("name"));
+    const old = nameKey(this.model.value("Places", row, "place"));
+    const isNamed = (one, field) => name && old && nameKey(this.model.value("Routes", one, field)) === old;
+    const named = ["start", "end"].flatMap((field) =>
+      (this.store.sheet("Routes")?.rowNumbers ?? []).filter((one) => isNamed(one, field)).flatMap((one) => this.#cells("Routes", one, { [field]: name })));
+    return this.#edit([...this.#cells("Places", row, { place: name }), ...named], t("name"));
+  }
+
+  /** The names of the segments of a route. */
+  #segmentsOf(route) {
+    const rows = this.store.sheet("Routes").rowNumbers.filter((one) => nameKey(this.model.value("Routes", one, "route")) === nameKey(route));
+    return rows.map((one) => this.model.text("Routes", one, "segment"));
   }
 
   /** Add a way between two places to a route; a door at its end has its width. */
@@ -273,61 +237,37 @@ export class PlanEdits {
     const widths = [from, to].filter((one) => POINTS.has(one.kind)).map((one) => this.model.widthOf(one)).filter((one) => one !== null);
     const row = this.#freeRow("Routes");
     if (row === null) return null;
-    const sheet = this.store.sheet("Routes");
-    const [routeAt, segmentAt] = [sheet.column("route").at, sheet.column("segment").at];
-    const own = sheet.rowNumbers.filter((one) => nameKey(sheet.value(one, routeAt)) === nameKey(route)).map((one) => String(sheet.value(one, segmentAt) ?? ""));
-    const edits = [
-      ...this.cell("Routes", row, "route", route), ...this.cell("Routes", row, "segment", nextName(String(own.length), own)),
-      ...this.cell("Routes", row, "floor", this.model.floorValue), ...this.cell("Routes", row, "start", from.place), ...this.cell("Routes", row, "end", to.place),
-      ...(widths.length ? this.length("Routes", row, "clear_width", Math.min(...widths)) : []),
-    ];
-    const done = this.#edit(edits, t("draw a way"));
-    this.select("Routes", [row]);
-    return done;
+    const own = this.#segmentsOf(route);
+    const width = widths.length ? Math.min(...widths) : undefined;
+    const values = { route, segment: nextName(String(own.length), own), start: from.place, end: to.place, clear_width: width };
+    return this.#addRow("Routes", row, values, t("draw a way"));
   }
 
-  /**
-   * Split a segment in two at a point, with a new place between them.
-   * @returns {{row, place, x, y} | null} the new place
-   */
+  /** Split a segment in two at a point, with a new place {row, place, x, y} between them. */
   splitSegment(row, [x, y]) {
     const [placeRow, segmentRow] = [this.#freeRow("Places"), this.#freeRow("Routes")];
     if (placeRow === null || segmentRow === null) return null;
-    const [places, sheet] = [this.store.sheet("Places"), this.store.sheet("Routes")];
-    const kind = this.#choice("Places", "kind", CORRIDOR);
-    const place = nextName(`${this.model.floor} ${kind ?? ""}`.trim() + " 0", places.names("place"));
-    const [routeAt, segmentAt] = [sheet.column("route").at, sheet.column("segment").at];
-    const own = sheet.rowNumbers.filter((one) => nameKey(sheet.value(one, routeAt)) === nameKey(sheet.value(row, routeAt)));
-    const segment = nextName(sheet.value(row, segmentAt), own.map((one) => String(sheet.value(one, segmentAt) ?? "")));
-    const changed = { segment, start: place };
-    const copied = sheet.columns.filter((column) => column.kind !== "live" && (isFilled(sheet.value(row, column.at)) || column.field in changed))
-      .map((column) => ["Routes", segmentRow, column.at, changed[column.field] ?? sheet.value(row, column.at)]);
+    const sheet = this.store.sheet("Routes");
+    const value = (field) => this.model.value("Routes", row, field);
+    const made = this.#newPlace(CORRIDOR);
+    const changed = { segment: nextName(value("segment"), this.#segmentsOf(value("route"))), start: made.place };
+    const copied = this.#filled(sheet, row).filter((one) => !(one.field in changed)).map((one) => ["Routes", segmentRow, one.at, sheet.value(row, one.at)]);
     this.#edit([
-      ...this.cell("Places", placeRow, "place", place), ...this.cell("Places", placeRow, "floor", this.model.floorValue), ...this.cell("Places", placeRow, "kind", kind),
-      ...this.length("Places", placeRow, "x", x, MILLIMETRE), ...this.length("Places", placeRow, "y", y, MILLIMETRE),
-      ...this.cell("Routes", row, "end", place), ...copied,
+      ...this.#cells("Places", placeRow, { ...made, floor: this.model.floorValue, x, y }, MILLIMETRE),
+      ...this.#cells("Routes", row, { end: made.place }), ...copied, ...this.#cells("Routes", segmentRow, changed),
     ], t("split a way"));
-    return { row: placeRow, place, x, y };
+    return { row: placeRow, place: made.place, x, y };
   }
 
-  // ---- the picture and anchors
+  // ---- the picture
 
   /** Where the picture lies, as the four numbers of the floor. */
-  placePicture({ left, bottom, width, turn }, label = t("place the picture")) {
-    const row = this.model.plan.floor_row;
-    const edits = [
-      ...this.length("Floors", row, "plan_left", left, MILLIMETRE), ...this.length("Floors", row, "plan_bottom", bottom, MILLIMETRE),
-      ...this.length("Floors", row, "plan_width", width, MILLIMETRE), ...this.cell("Floors", row, "plan_turn", roundTo(turn, 0.01)),
-    ];
-    return this.#edit(edits, label);
+  placePicture({ left, bottom, width, turn }, label) {
+    const values = { plan_left: left, plan_bottom: bottom, plan_width: width, plan_turn: roundTo(turn, 0.01) };
+    return this.#edit(this.#cells("Floors", this.model.plan.floor_row, values, MILLIMETRE), label);
   }
 
   namePicture(name) {
-    return this.#edit(this.cell("Floors", this.model.plan.floor_row, "plan", name), t("picture"));
-  }
-
-  anchor(rows, label) {
-    const yes = this.#choice("Items", "anchored", ANCHORED_YES);
-    return this.#edit(rows.flatMap((row) => this.cell("Items", row, "anchored", yes)), label);
+    return this.#edit(this.#cells("Floors", this.model.plan.floor_row, { plan: name }), t("picture"));
   }
 }

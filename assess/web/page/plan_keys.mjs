@@ -1,15 +1,15 @@
 // The plan by keyboard alone: Tab goes through the pieces, arrows move them, letters turn, copy and take them off.
 
+import { ARROWS } from "./plan_draft.mjs";
 import { roundTo } from "./plan_geometry.mjs";
-import { shownLength } from "./plan_pieces.mjs";
-import { listTools } from "./plan_toolbar.mjs";
+import { isPlaced } from "./plan_model.mjs";
+import { TOOLS } from "./plan_toolbar.mjs";
 import { tn, t } from "./texts.mjs";
 
 const STEP = 0.05; // metres
 const FINE = 0.01;
 const TURN = 90;
 const TURN_FINE = 15;
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const APART = 0.5; // where a copy stands [m]
 const FIELDS = "input, textarea, select, [contenteditable], dialog";
 
@@ -28,58 +28,53 @@ export const listKeys = () => [
   ["Alt", t("while dragging: no snapping")],
   [t("Wheel, + and −"), t("zoom; 0 shows all")],
   [t("Space and drag, middle button"), t("move the view")],
-  [listTools().map(([, , key]) => key).join(", "), listTools().map(([, label]) => label).join(", ")],
+  [TOOLS.map(([, key]) => key).join(", "), TOOLS.map(([, , label]) => label()).join(", ")],
 ];
 
 export class PlanKeys {
-  #clipboard = [];
-  #copiedAt = null; // where the pointer was
-  #pastes = 0; // since it moved
+  clipboard = [];
+  copiedAt = null; // where the pointer was
+  pastes = 0; // since it moved
   #burst = null;
   #leaves = false;
   #pointer = null;
 
-  /** @param {{root, model, store, scene, viewport, edits, say, canEdit, tool, setTool, remove}} parts */
   constructor(parts) {
-    Object.assign(this, parts);
+    Object.assign(this, parts, { pieces: parts.scene.pieces });
     this.root.addEventListener("keydown", (event) => this.#down(event));
     this.root.addEventListener("keyup", (event) => event.key in ARROWS && this.endBurst());
     this.root.addEventListener("focusout", () => this.endBurst());
     const { svg } = this.viewport;
     svg.addEventListener("pointermove", (event) => (this.#pointer = this.viewport.toWorld(this.viewport.toLocal(event.clientX, event.clientY))));
     svg.addEventListener("pointerleave", () => (this.#pointer = null));
-    svg.addEventListener("focusin", (event) => this.#focused(event));
+    svg.addEventListener("focusin", (event) => this.#onFocus(event));
   }
 
-  get pieces() {
-    return this.scene.pieces;
-  }
+  /** The row of the piece that has the focus, else 0. */
+  #focused = (node = document.activeElement) => Number(node?.closest?.(".piece")?.dataset.row ?? 0);
 
   /** A piece that gets the focus by Tab comes into view. */
-  #focused(event) {
-    const row = Number(event.target.closest?.(".piece")?.dataset.row ?? 0);
-    if (!row) return;
-    this.pieces.activate(row);
+  #onFocus({ target }) {
+    const row = this.#focused(target);
     const piece = this.model.pieces.get(row);
-    if (piece && event.target.matches(":focus-visible")) this.viewport.reveal([piece.x, piece.y]);
+    if (row) this.pieces.activate(row);
+    if (piece && target.matches(":focus-visible")) this.viewport.reveal([piece.x, piece.y]);
   }
 
   #down(event) {
     if (event.defaultPrevented || event.target.closest(FIELDS)) return;
     const isInPlan = event.target.closest("svg.plan") !== null;
     const isButton = event.target.closest("button, a, [role=tab]") !== null;
-    if (isInPlan && this.tool().key?.(event)) return event.preventDefault();
-    const isDone = event.ctrlKey || event.metaKey ? this.#control(event) : isInPlan ? this.#plain(event) : !isButton && this.#letter(event);
+    const isDone = (isInPlan && this.currentTool().key?.(event))
+      || (event.ctrlKey || event.metaKey ? this.#control(event) : isInPlan ? this.#plain(event) : !isButton && this.#letter(event));
     if (isDone) event.preventDefault();
-    return null;
   }
 
   /** What the keys act on: the selected pieces, else the one that has the focus. */
   #rows() {
     const selected = [...this.pieces.selected].filter((row) => this.model.pieces.has(row));
-    const focused = Number(document.activeElement?.closest?.(".piece")?.dataset.row ?? 0);
-    if (focused && !selected.includes(focused)) return [focused];
-    return selected;
+    const focused = this.#focused();
+    return focused && !selected.includes(focused) ? [focused] : selected;
   }
 
   #control(event) {
@@ -87,45 +82,38 @@ export class PlanKeys {
     const rows = this.#rows();
     if (key === "a") return this.edits.select("Items", this.pieces.order()), true;
     if (!this.canEdit()) return false;
-    if (key === "d" && rows.length) return this.#copy(rows), true;
+    if (key === "d" && rows.length) return this.#copy(rows, [APART, -APART]), true;
     if (key === "c" && rows.length && !String(getSelection())) {
-      this.#clipboard = rows;
-      this.#copiedAt = this.#pointer;
-      this.#pastes = 0;
+      Object.assign(this, { clipboard: rows, copiedAt: this.#pointer, pastes: 0 });
       this.say(tn("{n} piece copied", "{n} pieces copied", rows.length));
       return true;
     }
-    if (key === "v" && this.#clipboard.length) return this.#paste(), true;
-    return false;
+    return key === "v" && this.#paste();
   }
 
-  #copy(rows) {
-    this.edits.copy(rows, [APART, -APART]);
-    this.#focusSelected();
+  #copy(rows, shift) {
+    this.edits.copy(rows, shift);
+    const [row] = this.store.selection.rows;
+    if (row && this.model.pieces.has(row)) this.pieces.focus(row);
   }
 
   /** Paste at the pointer where it was moved over the plan, else next to the original, or in the middle on another floor. */
   #paste() {
-    const rows = this.#clipboard;
-    const at = rows.map((row) => [this.model.length("Items", row, "x"), this.model.length("Items", row, "y")]).filter((one) => one[0] !== null && one[1] !== null);
-    if (!at.length) return;
-    const centre = [0, 1].map((i) => at.reduce((sum, one) => sum + one[i], 0) / at.length);
+    const rows = this.clipboard;
+    const [pointer, before] = [this.#pointer, this.copiedAt];
+    const at = rows.map((row) => ({ x: this.model.length("Items", row, "x"), y: this.model.length("Items", row, "y") })).filter(isPlaced);
+    if (!at.length) return rows.length > 0;
+    const centre = ["x", "y"].map((axis) => at.reduce((sum, one) => sum + one[axis], 0) / at.length);
     const isHere = rows.some((row) => this.model.pieces.has(row));
-    const pointer = this.#pointer;
-    const hasMoved = pointer && (!this.#copiedAt || pointer[0] !== this.#copiedAt[0] || pointer[1] !== this.#copiedAt[1]);
-    if (hasMoved) this.#pastes = 0;
+    const hasMoved = pointer && (!before || pointer[0] !== before[0] || pointer[1] !== before[1]);
+    if (hasMoved) this.pastes = 0;
     const first = hasMoved || (pointer && !isHere) ? pointer : isHere ? [centre[0] + APART, centre[1] - APART] : this.viewport.centre;
-    const to = [first[0] + this.#pastes * APART, first[1] - this.#pastes * APART]; // never one over the other
-    this.#copiedAt = pointer;
-    this.#pastes += 1;
-    this.edits.copy(rows, [roundTo(to[0] - centre[0], FINE), roundTo(to[1] - centre[1], FINE)]);
-    this.#focusSelected();
+    const apart = [this.pastes * APART, -this.pastes * APART]; // never one over the other
+    this.copiedAt = pointer;
+    this.pastes += 1;
+    this.#copy(rows, [0, 1].map((i) => roundTo(first[i] + apart[i] - centre[i], FINE)));
     this.say(tn("{n} piece pasted", "{n} pieces pasted", at.length));
-  }
-
-  #focusSelected() {
-    const [row] = this.store.selection.rows;
-    if (row && this.model.pieces.has(row)) this.pieces.focus(row);
+    return true;
   }
 
   #plain(event) {
@@ -138,10 +126,11 @@ export class PlanKeys {
 
   #letter({ key, shiftKey, altKey }) {
     if (altKey) return false;
-    const view = { "+": () => this.viewport.zoom(1.25), "=": () => this.viewport.zoom(1.25), "-": () => this.viewport.zoom(0.8), "−": () => this.viewport.zoom(0.8), 0: () => this.fit() }[key];
-    if (view) return view(), true;
+    const zoom = { "+": 1.25, "=": 1.25, "-": 0.8, "−": 0.8 }[key];
+    if (zoom) return this.viewport.zoom(zoom), true;
+    if (key === "0") return this.fit(), true;
     if (!this.canEdit()) return false;
-    const tool = listTools().find((one) => one[2] === key.toUpperCase());
+    const tool = TOOLS.find((one) => one[1] === key.toUpperCase());
     if (tool) return this.setTool(tool[0]), true;
     const rows = this.#rows();
     if (key.toLowerCase() === "r" && rows.length) return this.turn(rows, shiftKey ? TURN_FINE : TURN), true;
@@ -157,7 +146,7 @@ export class PlanKeys {
 
   /** Tab goes on in the order of reading; past the last, and after Escape, it leaves. */
   #tab(isBack) {
-    const focused = Number(document.activeElement?.closest?.(".piece")?.dataset.row ?? 0);
+    const focused = this.#focused();
     const order = this.pieces.order();
     const next = order[order.indexOf(focused) + (isBack ? -1 : 1)];
     if (this.#leaves || !focused || next === undefined) return (this.#leaves = false);
@@ -166,7 +155,7 @@ export class PlanKeys {
   }
 
   #pick(adds) {
-    const focused = Number(document.activeElement?.closest?.(".piece")?.dataset.row ?? 0);
+    const focused = this.#focused();
     if (!focused) return false;
     const rows = this.pieces.selected;
     const others = [...rows].filter((row) => row !== focused);
@@ -176,7 +165,7 @@ export class PlanKeys {
 
   #escape() {
     this.#leaves = true;
-    if (this.tool().name !== "select") this.setTool("select");
+    if (this.currentTool().name !== "select") this.setTool("select");
     else if (this.store.selection.rows.length) this.edits.select("Items", []);
     else this.viewport.svg.focus();
     return true;
@@ -194,10 +183,9 @@ export class PlanKeys {
     const { shift } = this.#burst;
     shift[0] = roundTo(shift[0] + dx, FINE);
     shift[1] = roundTo(shift[1] + dy, FINE);
-    const poses = rows.map((row) => this.model.pieces.get(row)).map((one) => [one.row, { ...one, x: one.x + shift[0], y: one.y + shift[1] }]);
-    this.pieces.preview(new Map(poses));
+    this.pieces.preview(rows.map((row) => this.model.pieces.get(row)).map((one) => ({ ...one, x: one.x + shift[0], y: one.y + shift[1] })));
     this.scene.drawFalls();
-    this.onPreview();
+    this.select.showHandles();
     return true;
   }
 
@@ -209,8 +197,8 @@ export class PlanKeys {
     this.pieces.endPreview();
     this.model.release();
     this.scene.drawFalls();
-    this.onPreview();
+    this.select.showHandles();
     const piece = this.model.pieces.get(burst.rows[0]);
-    if (piece) this.say(`${piece.item}: ${t("X {x}, Y {y}", { x: shownLength(piece.x, this.model.unit), y: shownLength(piece.y, this.model.unit) })}`);
+    if (piece) this.say(`${piece.item}: ${this.model.shownAt([piece.x, piece.y])}`);
   }
 }

@@ -1,60 +1,115 @@
-// Lists beside the plan: pieces by class and those not placed yet, types to add, states of routes and rooms.
+// The panel's lists: pieces by class and those not placed yet, types to add, states of routes and rooms; and dragging from them.
 
 import { CLASSES, classStyle, describe } from "./classes.mjs";
+import { el } from "./elements.mjs";
 import { icon } from "./icons.mjs";
-import { nameKey } from "./plan_model.mjs";
-import { shownLength } from "./plan_pieces.mjs";
-import { t, tn } from "./texts.mjs";
+import { corners, roundTo } from "./plan_geometry.mjs";
+import { nameKey, stateCss } from "./plan_model.mjs";
+import { isDrag } from "./plan_pointer.mjs";
+import { number, t, tn } from "./texts.mjs";
 import { html, nothing, render } from "./vendor/lit-html.mjs";
 
 const MOST = 200;
 
-const matches = (words, ...texts) => words.every((word) => texts.some((text) => nameKey(text).includes(word)));
-
-/** A list of the panel: `content(words)` is its template, with the words that it is filtered by. */
-class List {
-  #words = [];
-
-  /** @param {object} parts what the plan is made of @param {string} label @param {string} search what its field says; "" where it has none */
-  constructor(parts, label, search = "") {
-    Object.assign(this, parts, { label, search });
-    this.node = document.createElement("section");
-    this.node.className = "plan-section";
-    this.node.setAttribute("aria-label", label);
+/** A section of the panel: `content()` is its template. */
+export class Section {
+  constructor(parts, label) {
+    Object.assign(this, parts, { node: el("section", { class: "plan-section", "aria-label": label }) });
   }
 
   draw() {
-    const filter = ({ target }) => ((this.#words = nameKey(target.value).split(" ").filter(Boolean)), this.draw());
-    render(html`${this.search ? html`<input type="search" aria-label=${this.search} placeholder=${this.search} @input=${filter}>` : nothing}${this.content(this.#words)}`, this.node);
+    render(this.content(), this.node);
   }
+}
+
+/** A section with a field by which its list is filtered. */
+class List extends Section {
+  words = [];
+
+  search(label) {
+    const filter = ({ target }) => ((this.words = nameKey(target.value).split(" ").filter(Boolean)), this.draw());
+    return html`<input type="search" aria-label=${label} placeholder=${label} @input=${filter}>`;
+  }
+
+  matches = (...texts) => this.words.every((word) => texts.some((text) => nameKey(text).includes(word)));
 
   /** The first rows of a list, and how many more there are. */
   rows(all, row) {
     const rest = all.length - MOST;
     return html`<ul class="rows">${all.slice(0, MOST).map(row)}${rest > 0 ? html`<li>${tn("{n:,} more", "{n:,} more", rest)}</li>` : nothing}</ul>`;
   }
+
+  /**
+   * Buttons are dragged onto the plan: a rectangle of the piece's size follows the pointer; Enter puts it in the middle.
+   * @param {(dataset) => {size: () => {breadth, width, angle}, drop: (at: number[]) => void}} find of a button
+   */
+  dragFrom(find) {
+    let held = null; // {from, button, size, drop}
+    let ghost = null;
+    const end = () => {
+      ghost?.remove();
+      held = ghost = null;
+      this.scene.sketch();
+    };
+    const on = (name, run) => this.node.addEventListener(name, (event) => run(event, event.target.closest(".draggable:not(:disabled)")));
+    on("pointerdown", (event, button) => {
+      if (event.button !== 0 || !button) return;
+      held = { from: [event.clientX, event.clientY], button, ...find(button.dataset) };
+      button.setPointerCapture(event.pointerId);
+    });
+    on("pointermove", (event) => {
+      if (!held || (!ghost && !isDrag(held.from, [event.clientX, event.clientY]))) return;
+      if (!ghost) document.body.append((ghost = el("div", { class: "plan-ghost", text: held.button.innerText })));
+      ghost.style.setProperty("transform", `translate(${event.clientX + 12}px, ${event.clientY + 12}px)`);
+      const found = this.#aim(event, held.size());
+      ghost.hidden = found !== null;
+      this.scene.sketch(found ? [{ name: "drawn", points: corners(found.piece), isClosed: true }] : [], [], found?.guides);
+    });
+    on("pointerup", (event) => {
+      if (!held) return;
+      const found = ghost && this.#aim(event, held.size());
+      const { drop } = held;
+      end();
+      if (found) drop([found.piece.x, found.piece.y]);
+    });
+    on("pointercancel", end);
+    on("keydown", (event, button) => {
+      if (event.key === "Escape" && ghost) end();
+      if (event.key !== "Enter" || !button) return;
+      event.preventDefault();
+      find(button.dataset).drop(this.viewport.centre.map((one) => roundTo(one, 0.01)));
+    });
+  }
+
+  /** Where a piece would stand under the pointer; null outside the drawing. */
+  #aim({ clientX, clientY, altKey }, size) {
+    const at = this.viewport.toLocal(clientX, clientY);
+    if (this.viewport.size.some((most, i) => at[i] < 0 || at[i] > most)) return null;
+    const [x, y] = this.viewport.toWorld(at);
+    const { at: [sx, sy], guides } = this.select.snapNew({ ...size, x, y }, altKey);
+    return { piece: { ...size, x: sx, y: sy }, guides };
+  }
 }
 
 export class PieceLists extends List {
-  /** @param {{model, store, scene, edits, canEdit, startDrag, goTo}} parts */
   constructor(parts) {
-    super(parts, t("Pieces"), t("Find a piece"));
-    this.startDrag(this.node, ({ dataset: { row } }) => ({ size: () => this.model.sizeOf(Number(row)), drop: (at) => this.edits.place(Number(row), at) }));
+    super(parts, t("Pieces"));
+    this.dragFrom(({ row }) => ({ size: () => this.model.sizeOf(Number(row)), drop: (at) => this.edits.place(Number(row), at) }));
   }
 
-  content(words) {
+  content() {
     const { model, scene: { pieces } } = this;
-    const found = (all) => all.filter((one) => matches(words, one.item, one.description)).map((piece) => ({ piece, shown: pieces.classOf(piece) }));
+    const found = (all) => all.filter((one) => this.matches(one.item, one.description)).map((piece) => ({ piece, shown: pieces.classOf(piece) }));
     const placed = found(pieces.order().map((row) => model.pieces.get(row))).sort((a, b) => (b.shown.chance ?? -1) - (a.shown.chance ?? -1));
     const groups = [...CLASSES, ""].map((key) => [key, placed.filter((one) => one.shown.key === key)]).filter(([, all]) => all.length);
-    return html`<div class="unplaced">${this.#unplaced(found(model.plan?.unplaced ?? []))}</div><div class="by-class">${groups.map(([key, all]) => this.#group(key, all))}</div>
+    return html`${this.search(t("Find a piece"))}<div class="unplaced">${this.#unplaced(found(model.plan?.unplaced ?? []))}</div><div class="by-class">${groups.map(([key, all]) => this.#group(key, all))}</div>
       ${placed.length ? nothing : html`<p class="muted">${t("No piece of this floor is on the plan.")}</p>`}`;
   }
 
   #group(key, all) {
     const { sign, word, css } = describe(key);
     return html`<div><h2 class="group-head"><span class="badge ${css}" aria-hidden="true">${sign}</span> ${word} (${all.length})</h2>${this.rows(all, ({ piece, shown }) => html`<li>
-      <button type="button" class="quiet row" aria-pressed=${this.scene.pieces.selected.has(piece.row)} data-row=${piece.row} @click=${() => this.goTo("Items", piece.row, [piece.x, piece.y])}>
+      <button type="button" class="quiet row" aria-pressed=${this.scene.pieces.selected.has(piece.row)} data-row=${piece.row} @click=${() => this.goTo("Items", [piece.row], [piece.x, piece.y])}>
         <b>${piece.item}</b><span>${piece.description}</span><span class="end">${shown.text}</span></button></li>`)}</div>`;
   }
 
@@ -82,27 +137,26 @@ export class PieceLists extends List {
 }
 
 export class TypeList extends List {
-  /** @param {{model, edits, startDrag}} parts */
   constructor(parts) {
-    super(parts, t("Add"), t("Find a type"));
-    this.startDrag(this.node, ({ dataset: { type } }) => {
+    super(parts, t("Add"));
+    this.dragFrom(({ type }) => {
       const { breadth, width } = this.model.types.find((one) => one.type === type);
       const size = { breadth: breadth ?? 0.4, width: width ?? breadth ?? 0.4, angle: 0 };
       return { size: () => size, drop: (at) => this.edits.add(type, at) };
     });
   }
 
-  content(words) {
+  content() {
     const { types } = this.model;
     if (!types.length) this.model.loadTypes().then((found) => found.length && this.draw()).catch(() => {});
-    const found = types.filter((one) => matches(words, one.type));
-    return html`<p class="hint">${t("Drag a type onto the plan, or press Enter to put it in the middle. Each becomes a row of the sheet.")}</p>
+    const found = types.filter((one) => this.matches(one.type));
+    return html`${this.search(t("Find a type"))}<p class="hint">${t("Drag a type onto the plan, or press Enter to put it in the middle. Each becomes a row of the sheet.")}</p>
       ${found.length ? this.rows(found, (one) => this.#row(one)) : html`<p class="muted">${types.length ? t("No type has such a name.") : t("The catalogue of this workbook is empty.")}</p>`}`;
   }
 
   #row(one) {
     const { unit, factor } = this.model.unit;
-    const sizes = [one.breadth, one.width, one.height].map((size) => (size ? shownLength(size, { unit: "", factor }).trim() : "?")).join(" × ");
+    const sizes = [one.breadth, one.width, one.height].map((size) => (size ? number(size / factor, 2) : "?")).join(" × ");
     return html`<li><button type="button" class="quiet row draggable" data-type=${one.type}><b>${one.type}</b><span class="end">${sizes} ${unit}</span></button></li>`;
   }
 }
@@ -110,7 +164,6 @@ export class TypeList extends List {
 export class RouteLists extends List {
   #all = false;
 
-  /** @param {{model, store, goTo}} parts */
   constructor(parts) {
     super(parts, t("Routes"));
   }
@@ -137,7 +190,7 @@ export class RouteLists extends List {
     ];
     if (!rows.length) return nothing;
     return html`<details><summary>${t("Rooms, exits and ways of this floor ({n})", { n: rows.length })}</summary><ul class="rows">${rows.map(([name, about, sheet, row]) =>
-      html`<li><button type="button" class="quiet row" @click=${() => this.goTo(sheet, row)}><b>${name}</b><span class="end">${about}</span></button></li>`)}</ul></details>`;
+      html`<li><button type="button" class="quiet row" @click=${() => this.goTo(sheet, [row])}><b>${name}</b><span class="end">${about}</span></button></li>`)}</ul></details>`;
   }
 
   #routes() {
@@ -148,7 +201,7 @@ export class RouteLists extends List {
 
   #rooms() {
     return this.model.routes.rooms.filter((one) => this.#all || nameKey(one.floor) === nameKey(this.model.floor))
-      .map((one) => [one.room, one, () => this.goTo("Places", one.place_row), this.model.places.has(one.place_row)]);
+      .map((one) => [one.room, one, () => this.goTo("Places", [one.place_row]), this.model.places.has(one.place_row)]);
   }
 
   /** The worst first. */
@@ -156,7 +209,7 @@ export class RouteLists extends List {
     const order = ["blocked", "doubtful", "not_known", "open"];
     const rank = ([, { state, standing, chance }]) => order.indexOf(state) - (standing ? 1 : 0) - (chance ?? 0) / 2;
     const rows = all.sort((a, b) => rank(a) - rank(b)).map(([name, state, run, isHere]) => html`<li>
-      <button type="button" class="quiet row state-${state.standing ? "standing" : state.state.replace("_", "-")}" ?disabled=${!isHere} title=${state.detail} @click=${run}>
+      <button type="button" class="quiet row ${stateCss(state)}" ?disabled=${!isHere} title=${state.detail} @click=${run}>
         <span class="state-word">${state.word}</span><b>${name}</b><span class="detail">${state.detail}</span></button></li>`);
     return rows.length ? html`<h2 class="group-head">${title} (${rows.length})</h2><ul class="rows states">${rows}</ul>` : nothing;
   }

@@ -1,8 +1,9 @@
 // One floor as the plan holds it: what the server answers, and until it does, what the edited cells say.
 
 import { get } from "./api.mjs";
-import { corners, isInside, moveRing, readOutline } from "./plan_geometry.mjs";
+import { corners, direction, distance, isInside, middle, moveRing, readOutline, sidesOf } from "./plan_geometry.mjs";
 import { isFilled } from "./sheet.mjs";
+import { number, t } from "./texts.mjs";
 
 const ASK_MS = 40;
 const ROUTES_MS = 300;
@@ -12,6 +13,15 @@ export const DOOR = 0.9;
 export const KINDS = ["room", "corridor", "door", "stair", "exit"]; // as the workbook lists them; the first two have an outline
 const SIZES = ["breadth", "width", "height"];
 const ANCHORED = ["no", "yes", "partly", "unknown"];
+/** States of routes and rooms, the best first, and their signs. */
+export const STATES = { open: "✓", doubtful: "≈", not_known: "?", blocked: "✕" };
+
+export const stateWords = () => ({ open: t("open"), doubtful: t("doubtful"), not_known: t("not known"), blocked: t("blocked") });
+
+/** The class of a state in the style sheet: as the reports, with what stands in the way already apart. */
+export const stateCss = (state) => (state ? `state-${state.standing ? "standing" : state.state.replace("_", "-")}` : "state-none");
+
+export const isPlaced = ({ x, y }) => x !== null && y !== null;
 
 /** Names as the workbook compares them. */
 export const nameKey = (name) => String(name ?? "").trim().replace(/\s+/g, " ").toLowerCase();
@@ -70,16 +80,25 @@ export class PlanModel extends EventTarget {
     return { unit: column?.unit || "m", factor: column?.factor || 1 };
   }
 
+  /** A length in metres as the page shows it. */
+  shownLength(metres, digits = 2) {
+    const { unit, factor } = this.unit;
+    return `${number(metres / factor, digits)} ${unit}`;
+  }
+
+  shownAt = ([x, y]) => t("X {x}, Y {y}", { x: this.shownLength(x), y: this.shownLength(y) });
+
   get floor() {
     return this.plan?.floor ?? "";
   }
 
   /** The cell that names the floor, as it stands there. */
   get floorValue() {
-    const sheet = this.store.sheet("Floors");
-    const column = sheet?.column("floor");
-    return (column && this.plan?.floor_row && sheet.value(this.plan.floor_row, column.at)) ?? this.floor;
+    return this.value("Floors", this.plan?.floor_row, "floor") ?? this.floor;
   }
+
+  /** Whether a row is of this floor. */
+  isHere = (sheet, row) => nameKey(this.text(sheet, row, "floor")) === nameKey(this.floor);
 
   // ---- asking
 
@@ -87,11 +106,9 @@ export class PlanModel extends EventTarget {
     const name = this.store.book?.name ?? "";
     if (name !== this.#book) this.#floor = this.#shownFloor = null;
     this.#book = name;
-    this.plan = null;
     if (!name) this.pieces = this.places = this.segments = new Map();
-    this.routes = null;
+    this.plan = this.routes = this.#routesStamp = null;
     this.types = [];
-    this.#routesStamp = null;
     this.doorWidths = new Map();
     this.#isStale = true;
     if (this.isShown) this.#ask();
@@ -134,18 +151,13 @@ export class PlanModel extends EventTarget {
   #take(answer) {
     const { store } = this;
     if (store.waiting || answer.version < store.state.version) return;
-    if (this.#held) {
-      this.#isStale = true;
-      return;
-    }
+    this.#isStale = this.#held;
+    if (this.#held) return;
     const isOther = this.#shownFloor !== answer.floor;
     this.plan = answer;
     this.#floor = this.#shownFloor = answer.floor;
     this.error = "";
-    this.#isStale = false;
-    this.pieces = new Map(answer.pieces.map((one) => [one.row, one]));
-    this.places = new Map(answer.places.map((one) => [one.row, one]));
-    this.segments = new Map(answer.segments.map((one) => [one.row, one]));
+    for (const name of ["pieces", "places", "segments"]) this[name] = new Map(answer[name].map((one) => [one.row, one]));
     if (isOther || this.isRefitted) this.#tell("floor");
     this.isRefitted = false;
     this.#tell("plan");
@@ -196,21 +208,33 @@ export class PlanModel extends EventTarget {
     return kind === "segment" ? this.routes.segments.find((one) => one.row === row) : this.routes.rooms.find((one) => one.place_row === row);
   }
 
-  /** Whether a piece is anchored: yes, no, partly, unknown. */
   anchored = (row) => this.#choice("Items", row, "anchored", ANCHORED) || "unknown";
 
-  /** The size of a piece by its cells and its type, also of one that is not on the plan [m, deg]. */
-  sizeOf(row) {
-    const type = this.types.find((one) => nameKey(one.type) === nameKey(this.text("Items", row, "type")));
-    const size = (field) => this.length("Items", row, field) ?? type?.[field] ?? null;
-    const breadth = size("breadth") ?? UNKNOWN_SIZE;
-    return { breadth, width: size("width") ?? breadth, angle: this.length("Items", row, "angle_deg") ?? 0 };
+  /** A size of a piece by its cells and its type [m]. */
+  #size(row, field, old = null) {
+    const type = nameKey(this.text("Items", row, "type"));
+    return this.length("Items", row, field, old) ?? this.types.find((one) => nameKey(one.type) === type)?.[field] ?? null;
   }
 
-  /** The outlined place that the Room of pieces means: by its name, also after the floor's, else the one in which its pieces stand. */
+  /** How a piece that is not on the plan would lie there [m, deg]. */
+  sizeOf(row) {
+    const breadth = this.#size(row, "breadth") ?? UNKNOWN_SIZE;
+    return { breadth, width: this.#size(row, "width") ?? breadth, angle: this.length("Items", row, "angle_deg") ?? 0 };
+  }
+
+  /** The places with an outline, and the sides of all. */
+  get outlined() {
+    return [...this.places.values()].filter((one) => one.outline);
+  }
+
+  get walls() {
+    return this.outlined.flatMap((one) => sidesOf(one.outline));
+  }
+
+  /** The outlined place that the Room of pieces means: by its name, also after the floor's, else where its pieces stand. */
   roomNamed(room) {
     const name = nameKey(room);
-    const outlined = name ? [...this.places.values()].filter((one) => one.outline) : [];
+    const outlined = name ? this.outlined : [];
     const named = outlined.find(({ place }) => [name, nameKey(`${this.floor} ${room}`)].includes(nameKey(place)));
     if (named || !outlined.length) return named;
     const stand = [...this.pieces.values()].filter((one) => nameKey(this.text("Items", one.row, "room")) === name);
@@ -242,20 +266,21 @@ export class PlanModel extends EventTarget {
     this.#tell("plan");
   }
 
-  /** A length of a cell in metres; `old` where it is no number. */
-  length(sheetName, row, field, old = null) {
+  /** The value of a cell by its field; null where it is blank or the workbook lacks the column. */
+  value(sheetName, row, field) {
     const sheet = this.store.sheet(sheetName);
     const column = sheet?.column(field);
-    const value = column ? sheet.value(row, column.at) : null;
-    if (typeof value === "number") return value * column.factor;
+    return column ? sheet.value(row, column.at) : null;
+  }
+
+  /** A length of a cell in metres; `old` where it is no number. */
+  length(sheetName, row, field, old = null) {
+    const value = this.value(sheetName, row, field);
+    if (typeof value === "number") return value * this.store.sheet(sheetName).column(field).factor;
     return isFilled(value) ? old : null;
   }
 
-  text(sheetName, row, field) {
-    const sheet = this.store.sheet(sheetName);
-    const column = sheet?.column(field);
-    return column ? String(sheet.value(row, column.at) ?? "") : "";
-  }
+  text = (sheetName, row, field) => String(this.value(sheetName, row, field) ?? "");
 
   /** The English word of a choice. */
   #choice(sheetName, row, field, words) {
@@ -266,31 +291,27 @@ export class PlanModel extends EventTarget {
 
   #patchPiece(row) {
     const old = this.pieces.get(row);
-    const isHere = nameKey(this.text("Items", row, "floor")) === nameKey(this.floor);
-    const [x, y] = [this.length("Items", row, "x", old?.x), this.length("Items", row, "y", old?.y)];
-    const unplaced = this.plan.unplaced.filter((one) => one.row !== row);
-    const item = this.text("Items", row, "item");
-    const description = this.text("Items", row, "description") || this.text("Items", row, "type");
-    if (isHere && (x === null || y === null) && item) unplaced.push({ row, item, description });
-    this.plan.unplaced = unplaced;
-    if (!isHere || x === null || y === null) this.pieces.delete(row);
-    else this.pieces.set(row, this.#localPiece(row, { x, y, item, description }, old));
+    const at = { x: this.length("Items", row, "x", old?.x), y: this.length("Items", row, "y", old?.y) };
+    const [item, description, type] = ["item", "description", "type"].map((field) => this.text("Items", row, field));
+    const named = { row, item, description: description || type };
+    const isHere = this.isHere("Items", row);
+    this.plan.unplaced = this.plan.unplaced.filter((one) => one.row !== row);
+    if (isHere && !isPlaced(at) && item) this.plan.unplaced.push(named);
+    if (!isHere || !isPlaced(at)) this.pieces.delete(row);
+    else this.pieces.set(row, this.#localPiece({ ...named, ...at }, old));
   }
 
-  #localPiece(row, base, old) {
+  #localPiece(named, old) {
+    const { row } = named;
     const isY = this.#choice("Items", row, "axis", ["X", "Y"]) === "Y";
-    const angle = this.length("Items", row, "angle_deg", old?.angle) ?? (isY ? 90 : 0);
-    const type = this.types.find((one) => nameKey(one.type) === nameKey(this.text("Items", row, "type")));
-    const size = (field) => this.length("Items", row, field, old?.[field]) ?? type?.[field] ?? null;
-    const [b, w] = [size("breadth"), size("width")];
-    const breadth = b ?? old?.breadth ?? UNKNOWN_SIZE;
-    const width = w ?? old?.width ?? b ?? UNKNOWN_SIZE;
+    const known = Object.fromEntries(SIZES.map((field) => [field, this.#size(row, field, old?.[field])]));
     const piece = {
-      row, ...base, angle, breadth, width, height: size("height") ?? old?.height ?? null,
-      anchored: this.anchored(row), quantity: old?.quantity ?? 1,
-      missing: SIZES.filter((field) => size(field) === null && (old?.missing.includes(field) ?? true)), fallen: [],
+      ...named, angle: this.length("Items", row, "angle_deg", old?.angle) ?? (isY ? 90 : 0), fallen: [],
+      breadth: known.breadth ?? old?.breadth ?? UNKNOWN_SIZE, width: known.width ?? old?.width ?? known.breadth ?? UNKNOWN_SIZE,
+      height: known.height ?? old?.height ?? null, anchored: this.anchored(row),
+      missing: SIZES.filter((field) => known[field] === null && (old?.missing.includes(field) ?? true)),
     };
-    const isSame = old && old.breadth === piece.breadth && old.width === piece.width && old.height === piece.height;
+    const isSame = old && SIZES.every((field) => old[field] === piece[field]);
     if (isSame) piece.fallen = old.fallen.map((ring) => moveRing(ring, old, piece));
     return piece;
   }
@@ -298,12 +319,9 @@ export class PlanModel extends EventTarget {
   #patchPlace(row) {
     const old = this.places.get(row);
     const name = this.text("Places", row, "place");
-    if (!name || nameKey(this.text("Places", row, "floor")) !== nameKey(this.floor)) {
-      this.places.delete(row);
-      return;
-    }
+    if (!name || !this.isHere("Places", row)) return this.places.delete(row);
     const outline = readOutline(this.text("Places", row, "outline"), this.store.sheet("Places").column("outline"));
-    this.places.set(row, {
+    return this.places.set(row, {
       row, place: name, kind: this.#choice("Places", row, "kind", KINDS), outline,
       x: this.length("Places", row, "x", old?.x), y: this.length("Places", row, "y", old?.y),
     });
@@ -313,39 +331,32 @@ export class PlanModel extends EventTarget {
   #patchSegments(rows) {
     const places = new Map([...this.places.values()].map((one) => [nameKey(one.place), one]));
     for (const row of new Set([...this.segments.keys(), ...rows])) {
-      const [from, to] = [this.text("Routes", row, "start"), this.text("Routes", row, "end")];
-      const ends = [places.get(nameKey(from)), places.get(nameKey(to))];
-      const isNamed = this.text("Routes", row, "route") !== "" || this.text("Routes", row, "segment") !== "";
+      const [route, segment, from, to] = ["route", "segment", "start", "end"].map((field) => this.text("Routes", row, field));
+      const ends = [from, to].map((one) => places.get(nameKey(one)));
       const old = this.segments.get(row);
-      if (!isNamed || (ends.includes(undefined) && !old)) {
+      if ((!route && !segment) || (ends.includes(undefined) && !old)) {
         this.segments.delete(row);
         continue;
       }
-      const points = ends.every((one) => one && one.x !== null && one.y !== null) ? ends.map((one) => [one.x, one.y]) : [];
-      const isSame = old && JSON.stringify(old.points) === JSON.stringify(points);
+      const points = ends.every((one) => one && isPlaced(one)) ? ends.map((one) => [one.x, one.y]) : [];
       const width = this.length("Routes", row, "clear_width") ?? this.length("Routes", row, "required_width") ?? old?.width ?? DOOR;
-      this.segments.set(row, {
-        row, route: this.text("Routes", row, "route"), segment: this.text("Routes", row, "segment"), points, width, from, to,
-        outline: isSame && old.width === width ? old.outline : bandOf(points, width),
-      });
+      const isSame = old && JSON.stringify([old.points, old.width]) === JSON.stringify([points, width]);
+      const outline = isSame ? old.outline : bandOf(points, width);
+      this.segments.set(row, { row, route, segment, points, width, from, to, outline });
     }
   }
 
   #patchPicture() {
     const { picture, floor_row: row } = this.plan;
     if (!picture) return;
-    const number = (field) => this.length("Floors", row, field);
-    const [left, bottom, width] = [number("plan_left"), number("plan_bottom"), number("plan_width")];
-    Object.assign(picture, { left, bottom, width: width ?? picture.width, turn: number("plan_turn") ?? 0 });
+    const [left, bottom, width, turn] = ["left", "bottom", "width", "turn"].map((field) => this.length("Floors", row, `plan_${field}`));
+    Object.assign(picture, { left, bottom, width: width ?? picture.width, turn: turn ?? 0 });
     picture.placed = left !== null && bottom !== null && picture.width !== null;
   }
 }
 
-function bandOf(points, width) {
-  if (points.length < 2) return null;
-  const [[x0, y0], [x1, y1]] = points;
-  const length = Math.hypot(x1 - x0, y1 - y0);
-  if (length === 0) return null;
-  const angle = (Math.atan2(y1 - y0, x1 - x0) * 180) / Math.PI;
-  return corners({ x: (x0 + x1) / 2, y: (y0 + y1) / 2, angle, breadth: length, width });
+function bandOf([a, b], width) {
+  const length = b ? distance(a, b) : 0;
+  const [x, y] = length ? middle(a, b) : [];
+  return length ? corners({ x, y, angle: direction(a, b), breadth: length, width }) : null;
 }

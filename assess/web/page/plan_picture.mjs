@@ -1,89 +1,84 @@
 // The picture under the plan: add one, place it by two clicks and a distance, move and turn it, how strong it shows.
 
 import { send } from "./api.mjs";
-import { clear, el } from "./elements.mjs";
-import { direction, distance, fromPicture, onPicture, placePicture, readNumber, roundTo, turnPoint } from "./plan_geometry.mjs";
+import { PointsTool } from "./plan_draft.mjs";
+import { direction, distance, fromPicture, onPicture, putPicture, readNumber, roundTo, wholeAngle } from "./plan_geometry.mjs";
+import { Section } from "./plan_lists.mjs";
 import { notice } from "./messages.mjs";
 import { number, t } from "./texts.mjs";
+import { html, nothing } from "./vendor/lit-html.mjs";
 import { whenSent } from "./watch.mjs";
 
 const PICTURES = ".png,.jpg,.jpeg,.svg,.dxf";
 const KEPT = "assess-picture-opacity";
 
 /** Two clicks on the picture, then the panel asks for the distance. */
-export class PlacingTool {
+export class PlacingTool extends PointsTool {
   name = "placing";
-  takesTouch = true;
   points = []; // in shares of the picture
   known = null;
   wantsKnown = false;
 
-  constructor(parts) {
-    Object.assign(this, parts);
+  help() {
+    return t("Click two points of the picture whose distance you know.");
   }
 
   enter() {
-    this.points = [];
     this.known = null;
     this.wantsKnown = false;
-    this.say(t("Click two points of the picture whose distance you know."));
+    super.enter();
     this.onChange();
   }
 
   leave() {
-    this.points = [];
-    this.scene.sketch();
+    super.leave();
     this.onChange();
   }
 
-  up(point) {
-    const at = onPicture(point.at, this.scene.placement());
-    if (this.wantsKnown) {
-      this.known = at;
-      this.wantsKnown = false;
-    } else if (this.points.length < 2) this.points.push(at);
-    this.move(point);
+  clear() {
+    super.clear();
+    if (this.isActive) this.enter();
+  }
+
+  snap({ at }) {
+    return { point: at };
+  }
+
+  add({ point }) {
+    const at = onPicture(point, this.scene.placement());
+    if (this.wantsKnown) this.known = at;
+    else if (this.points.length < 2) this.points.push(at);
+    this.wantsKnown = false;
     this.onChange();
   }
 
-  move(point) {
+  draw({ point }) {
     const placement = this.scene.placement();
     if (!placement) return;
     const ends = this.points.map((one) => fromPicture(one, placement));
-    if (ends.length === 1) ends.push(point.at);
-    const dots = this.known ? [{ name: "measured", points: [fromPicture(this.known, placement)], dots: true }] : [];
-    this.scene.sketch([{ name: "measured", points: ends, dots: true }, ...dots]);
-  }
-
-  key(event) {
-    if (event.key !== "Escape" || this.points.length === 0) return false;
-    this.enter();
-    this.scene.sketch();
-    return true;
+    if (ends.length === 1) ends.push(point);
+    const known = this.known ? [fromPicture(this.known, placement)] : [];
+    this.sketch([ends, known].map((points) => ({ name: "measured", points, dots: true })));
   }
 
   /** Place the picture: the distance in metres, the known point, how the line runs: "" as it is, else 0 or 90 degrees. */
   finish(length, at, run) {
-    const placement = this.scene.placement();
     const [a, b] = this.points;
-    if (distance(a, b) < 1e-6 || !(length > 0)) return;
-    const slope = direction(a, b);
-    const turn = run === "" ? placement.turn : Number(run) - slope;
-    const placed = placePicture(this.points, length, this.known ?? a, at, ((turn % 360) + 360) % 360);
-    this.edits.placePicture(placed);
+    if (distance(a, b) < 1e-6) return;
+    const turn = run === "" ? this.scene.placement().turn : Number(run) - direction(a, b);
+    this.edits.placePicture(putPicture(this.known ?? a, at, length / distance(a, b), wholeAngle(turn, 1e-6)), t("place the picture"));
     this.done();
     this.model.isRefitted = true;
   }
 }
 
-export class Picture {
+export class Picture extends Section {
   isUnlocked = false;
+  #error = "";
 
   constructor(parts) {
-    Object.assign(this, parts);
-    this.node = el("section", { class: "plan-section picture-panel", "aria-label": t("Picture") });
-    const kept = Number(sessionStorage.getItem(KEPT) ?? NaN);
-    if (Number.isFinite(kept)) this.scene.opacity = kept;
+    super(parts, t("Picture"));
+    this.scene.opacity = Number(sessionStorage.getItem(KEPT) ?? this.scene.opacity);
     this.tool.onChange = () => this.draw();
   }
 
@@ -93,23 +88,22 @@ export class Picture {
 
   // ---- dragging the picture
 
+  /** A gesture: `moved(point, from)` is where the picture lies meanwhile. */
+  #gesture(label, moved) {
+    let now = null;
+    return {
+      drag: (point, from) => this.scene.drawPicture((now = moved(point, from))),
+      drop: () => this.edits.placePicture(now, label),
+    };
+  }
+
   carry() {
     const from = this.scene.placement();
     if (!from) return {};
-    const gesture = {};
-    let now = from;
-    gesture.drag = (point, { at }) => {
-      const [dx, dy] = [point.at[0] - at[0], point.at[1] - at[1]];
-      now = { ...from, left: from.left + dx, bottom: from.bottom + dy };
-      this.scene.drawPicture(now);
-    };
-    gesture.drop = () => this.edits.placePicture(now, t("move the picture"));
-    return gesture;
+    return this.#gesture(t("move the picture"), ({ at: [x, y] }, { at: [x0, y0] }) => ({ ...from, left: from.left + x - x0, bottom: from.bottom + y - y0 }));
   }
 
-  #centre(at) {
-    return fromPicture([0.5, this.picture.aspect / 2], at);
-  }
+  #centre = (at) => fromPicture([0.5, this.picture.aspect / 2], at);
 
   handles() {
     if (!this.isUnlocked || !this.picture) return [];
@@ -120,129 +114,105 @@ export class Picture {
   turning() {
     const from = this.scene.placement();
     const centre = this.#centre(from);
-    let now = from;
-    const gesture = {};
-    gesture.drag = (point, { at }) => {
-      const by = direction(centre, point.at) - direction(centre, at);
-      const turn = roundTo((((from.turn + by) % 360) + 360) % 360, point.alt ? 0.1 : 1);
-      const [u, v] = turnPoint([(from.width) / 2, (from.width * this.picture.aspect) / 2], turn);
-      now = { ...from, turn, left: centre[0] - u, bottom: centre[1] - v };
-      this.scene.drawPicture(now);
+    return this.#gesture(t("turn the picture"), (point, { at }) => {
+      const turn = wholeAngle(from.turn + direction(centre, point.at) - direction(centre, at), point.alt ? 0.1 : 1);
       this.scene.sketch([], [{ at: centre, text: `${number(turn)}°` }]);
-    };
-    gesture.drop = () => this.edits.placePicture(now, t("turn the picture"));
-    return gesture;
+      return putPicture([0.5, this.picture.aspect / 2], centre, from.width, turn);
+    });
   }
 
   // ---- the panel
 
-  draw() {
+  content() {
     const { picture } = this;
     const canEdit = this.canEdit();
-    clear(this.node);
     if (!picture) {
-      this.node.append(el("p", { text: canEdit ? t("A picture of the floor can lie under the plan: PNG, JPEG, SVG or DXF.") : t("This floor has no picture.") }));
-      if (canEdit) this.node.append(this.#chooser(t("Add a picture…")));
-      return;
+      const text = canEdit ? t("A picture of the floor can lie under the plan: PNG, JPEG, SVG or DXF.") : t("This floor has no picture.");
+      return html`<p>${text}</p>${canEdit ? this.#chooser(t("Add a picture…")) : nothing}`;
     }
-    this.node.append(this.#opacity());
-    if (!canEdit) return;
-    if (this.currentTool() === this.tool) this.node.append(...this.#steps());
-    else this.node.append(...this.#actions(picture));
-  }
-
-  #opacity() {
-    const input = el("input", { type: "range", min: "0", max: "1", step: "0.05", value: String(this.scene.opacity) });
-    input.addEventListener("input", () => {
-      this.scene.opacity = Number(input.value);
-      sessionStorage.setItem(KEPT, input.value);
+    const fade = ({ target }) => {
+      this.scene.opacity = target.valueAsNumber;
+      sessionStorage.setItem(KEPT, target.value);
       this.scene.drawPicture();
-    });
-    return el("label", { class: "field" }, el("span", { class: "field-name", text: t("Opacity") }), input);
+    };
+    return html`<label class="field"><span class="field-name">${t("Opacity")}</span>
+      <input type="range" min="0" max="1" step="0.05" .value=${String(this.scene.opacity)} @input=${fade}></label>
+      ${canEdit ? (this.currentTool() === this.tool ? this.#steps() : this.#actions(picture)) : nothing}`;
   }
 
-  #actions(picture) {
-    const status = picture.placed ? t("Placed: {width} wide.", { width: this.shown(picture.width) }) : t("Not placed yet: it is fitted to the plan until then.");
-    const unlock = el("input", { type: "checkbox", checked: this.isUnlocked });
-    unlock.addEventListener("change", () => this.unlock(unlock.checked));
-    return [
-      el("p", { class: picture.placed ? "muted" : "warning-text", text: status }),
-      el("div", { class: "buttons" }, el("button", { type: "button", class: picture.placed ? "" : "primary", text: t("Place by two points…"), on: { click: () => this.start() } })),
-      el("label", { class: "check" }, unlock, t("Unlocked: drag and turn the picture")), this.#chooser(t("Another picture…")),
-    ];
+  #actions({ placed, width }) {
+    const status = placed ? t("Placed: {width} wide.", { width: this.model.shownLength(width) }) : t("Not placed yet: it is fitted to the plan until then.");
+    return html`<p class=${placed ? "muted" : "warning-text"}>${status}</p>
+      <div class="buttons"><button type="button" class=${placed ? "" : "primary"} @click=${() => this.setTool("placing")}>${t("Place by two points…")}</button></div>
+      <label class="check"><input type="checkbox" .checked=${this.isUnlocked} @change=${({ target }) => this.#unlock(target.checked)}>${t("Unlocked: drag and turn the picture")}</label>
+      ${this.#chooser(t("Another picture…"))}`;
   }
 
-  unlock(on) {
+  #unlock(on) {
     this.isUnlocked = on;
     this.select.showHandles();
     this.viewport.svg.classList.toggle("picture-unlocked", on);
   }
 
-  shown(metres) {
-    const { unit, factor } = this.model.unit;
-    return `${number(metres / factor, 2)} ${unit}`;
-  }
-
   #steps() {
     const { tool } = this;
-    const cancel = el("button", { type: "button", text: t("Cancel"), on: { click: () => tool.done() } });
-    if (tool.points.length < 2) {
-      const text = tool.points.length === 0 ? t("1. Click a point of the picture.") : t("2. Click a second point whose distance from the first you know.");
-      return [el("p", { role: "status", text }), el("div", { class: "buttons" }, cancel)];
-    }
-    return [this.#form(cancel)];
+    const cancel = html`<button type="button" @click=${() => tool.done()}>${t("Cancel")}</button>`;
+    if (tool.points.length === 2) return this.#form(cancel);
+    this.#error = "";
+    const text = tool.points.length ? t("2. Click a second point whose distance from the first you know.") : t("1. Click a point of the picture.");
+    return html`<p role="status">${text}</p><div class="buttons">${cancel}</div>`;
   }
 
   #form(cancel) {
-    const { tool } = this;
-    const { unit, factor } = this.model.unit;
-    const placement = this.scene.placement();
-    const known = fromPicture(tool.known ?? tool.points[0], placement);
-    const isPlaced = this.picture.placed;
-    const field = (label, value) => {
-      const input = el("input", { inputMode: "decimal", value, autocomplete: "off" });
-      return [input, el("label", { class: "field" }, el("span", { class: "field-name", text: `${label} [${unit}]` }), input)];
-    };
-    const [length, lengthField] = field(t("Distance of the two points"), this.length ?? "");
-    const shown = (metres) => number(roundTo(isPlaced && !tool.known ? metres / factor : 0, 0.001));
-    const [x, xField] = field(tool.known ? t("X of the known point") : t("X of the first point"), shown(known[0]));
-    const [y, yField] = field(tool.known ? t("Y of the known point") : t("Y of the first point"), shown(known[1]));
-    const run = el("select", null, [["", t("as the picture is turned")], ["0", t("along X, to the right")], ["90", t("along Y, upward")]].map(([value, text]) => el("option", { value, text })));
-    const origin = el("button", { type: "button", text: t("Click another known point"), on: { click: () => {
-      this.length = length.value;
+    const { tool, model: { unit: { unit, factor } } } = this;
+    const known = fromPicture(tool.known ?? tool.points[0], this.scene.placement());
+    const shown = (metres) => number(roundTo(this.picture.placed && !tool.known ? metres / factor : 0, 0.001));
+    const field = (name, label, value) => html`<label class="field"><span class="field-name">${label} [${unit}]</span>
+      <input name=${name} inputmode="decimal" autocomplete="off" .value=${value}></label>`;
+    const runs = [["", t("as the picture is turned")], ["0", t("along X, to the right")], ["90", t("along Y, upward")]];
+    const wantKnown = ({ target: { form } }) => {
+      form.x.value = form.y.value = "0";
       tool.wantsKnown = true;
-      tool.say(t("Click a point of the picture whose X and Y you know, such as the origin."));
-    } } });
-    const error = el("p", { class: "error-text", role: "alert" });
-    const form = el("form", { class: "picture-form" }, lengthField, el("div", { class: "pair" }, xField, yField), origin,
-      el("label", { class: "field" }, el("span", { class: "field-name", text: t("From the first point to the second it runs") }), run), error,
-      el("div", { class: "buttons" }, el("button", { type: "submit", class: "primary", text: t("Place the picture") }), cancel));
-    form.addEventListener("submit", (event) => {
-      event.preventDefault();
-      const values = [length, x, y].map((one) => readNumber(one.value) * factor);
-      if (!(values[0] > 0) || values.some((one) => !Number.isFinite(one))) {
-        error.textContent = t("The distance is a number above 0, X and Y are numbers.");
-        return;
-      }
-      this.length = null;
-      tool.finish(values[0], [values[1], values[2]], run.value);
-    });
-    queueMicrotask(() => length.focus());
-    return form;
+      this.say(t("Click a point of the picture whose X and Y you know, such as the origin."));
+    };
+    return html`<form class="picture-form" @submit=${(event) => this.#submit(event)}>${field("apart", t("Distance of the two points"), "")}
+      <div class="pair">${field("x", tool.known ? t("X of the known point") : t("X of the first point"), shown(known[0]))}
+        ${field("y", tool.known ? t("Y of the known point") : t("Y of the first point"), shown(known[1]))}</div>
+      <button type="button" @click=${wantKnown}>${t("Click another known point")}</button>
+      <label class="field"><span class="field-name">${t("From the first point to the second it runs")}</span>
+        <select name="run">${runs.map(([value, text]) => html`<option value=${value}>${text}</option>`)}</select></label>
+      <p class="error-text" role="alert">${this.#error}</p>
+      <div class="buttons"><button type="submit" class="primary">${t("Place the picture")}</button>${cancel}</div></form>`;
+  }
+
+  draw() {
+    const had = this.node.querySelector("form");
+    super.draw();
+    if (!had) this.node.querySelector("form")?.apart.focus();
+  }
+
+  #submit(event) {
+    event.preventDefault();
+    const { apart, x, y, run } = event.target;
+    const [length, ...at] = [apart, x, y].map((one) => readNumber(one.value) * this.model.unit.factor);
+    const isRight = length > 0 && [length, ...at].every(Number.isFinite);
+    this.#error = isRight ? "" : t("The distance is a number above 0, X and Y are numbers.");
+    if (isRight) this.tool.finish(length, at, run.value);
+    else this.draw();
   }
 
   // ---- adding a picture
 
   #chooser(label) {
-    const input = el("input", { type: "file", accept: PICTURES, class: "unseen", tabIndex: -1, "aria-label": label });
-    input.addEventListener("change", () => this.#add(input.files[0]));
-    return el("div", { class: "buttons" }, el("button", { type: "button", text: label, on: { click: () => input.click() } }), input);
+    return html`<div class="buttons"><button type="button" @click=${({ target }) => target.nextElementSibling.click()}>${label}</button>
+      <input type="file" accept=${PICTURES} class="unseen" tabindex="-1" aria-label=${label} @change=${({ target }) => this.#add(target)}></div>`;
   }
 
   /** Name the file in the workbook, then send it: only files that it names are taken. */
-  async #add(file) {
-    if (!file) return;
-    if (!(await this.edits.namePicture(file.name))) return;
+  async #add(input) {
+    const [file] = input.files;
+    input.value = ""; // the same file may be chosen for another floor
+    if (!file || !(await this.edits.namePicture(file.name))) return;
     await whenSent(this.store);
     if (!this.store.book.missing.some((one) => one.name === file.name)) return;
     try {

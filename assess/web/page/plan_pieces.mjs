@@ -1,9 +1,10 @@
 // The pieces on the plan: a rectangle each, with its class as colour and sign, its name, and the sides that are Breadth.
 
 import { basisWords, chanceText, classStyle, describe, isPale } from "./classes.mjs";
-import { svg } from "./elements.mjs";
-import { boxOf, corners, turnPoint } from "./plan_geometry.mjs";
+import { svg as element } from "./elements.mjs";
+import { boxOf, boxesMeet, corners, modulo, radians, turnPoint } from "./plan_geometry.mjs";
 import { number, percent, t } from "./texts.mjs";
+import { render, svg } from "./vendor/lit-html.mjs";
 
 const LEAST_SIGN = 7; // font size [px]
 const MOST_SIGN = 15;
@@ -11,186 +12,125 @@ const LETTER = 6.4; // width of a letter of a name [px]
 const NAME_HEIGHT = 12;
 const NAMED_FROM = 45; // pixels a metre from which names stand below pieces, too
 const UNKNOWN_PX = 9; // of the question marks beyond the ends
+const RAISED_UP_TO = 20; // selected pieces
 
-/** Lengths in metres as the page shows them, in the unit of the workbook. */
-export function shownLength(metres, { unit, factor }, digits = 2) {
-  return `${number(metres / factor, digits)} ${unit}`;
-}
+const translate = (x, y) => `translate(${x.toFixed(4)} ${(-y).toFixed(4)})`;
 
 export class PieceLayer {
   #nodes = new Map();
   #previews = new Map();
+  #besides = new Set(); // rows of those whose names stand below them
   active = 0; // the piece that Tab reaches
 
   constructor(model, store) {
-    Object.assign(this, { model, store, scale: 40, selected: new Set() });
-    this.node = svg("g", { class: "pieces" });
+    Object.assign(this, { model, store, scale: 40, selected: new Set(), node: element("g", { class: "pieces" }) });
   }
 
   // ---- drawing
 
   draw() {
-    const { pieces } = this.model;
-    for (const [row, parts] of this.#nodes) {
+    const { model: { pieces, floor }, node } = this;
+    for (const [row, one] of this.#nodes) {
       if (pieces.has(row)) continue;
-      parts.node.remove();
+      one.remove();
       this.#nodes.delete(row);
     }
-    for (const piece of pieces.values()) {
-      const parts = this.#nodes.get(piece.row) ?? this.#make(piece.row);
-      this.#update(parts, piece);
-    }
-    this.#nameBeside();
-    this.#setRole(pieces.size > 0);
     if (!pieces.has(this.active)) this.active = this.order()[0] ?? 0;
-    this.#setTabStops();
-  }
-
-  #setRole(hasAny) {
-    const { node } = this;
-    if (!hasAny) for (const name of ["role", "aria-multiselectable", "aria-label"]) node.removeAttribute(name);
-    else {
-      node.setAttribute("role", "listbox");
-      node.setAttribute("aria-multiselectable", "true");
-      node.setAttribute("aria-label", t("Pieces on floor {floor}", { floor: this.model.floor }));
+    this.#placeNames();
+    for (const piece of pieces.values()) this.#drawPiece(piece);
+    const named = { role: "listbox", "aria-multiselectable": "true", "aria-label": t("Pieces on floor {floor}", { floor }) };
+    for (const [name, value] of Object.entries(named)) {
+      if (pieces.size) node.setAttribute(name, value);
+      else node.removeAttribute(name);
     }
   }
 
-  #make(row) {
-    const parts = { title: svg("title"), body: svg("rect", { class: "body" }), sides: svg("path", { class: "sides" }), sign: svg("text", { class: "sign" }), name: svg("text", { class: "name" }) };
-    parts.turned = svg("g", null, parts.body, parts.sides);
-    parts.unknown = svg("g", { class: "unknown-ends" });
-    parts.px = svg("g", { class: "px" }, parts.sign, parts.name);
-    parts.node = svg("g", { class: "piece", role: "option", "data-row": row, tabindex: "-1" }, parts.title, parts.turned, parts.unknown, parts.px);
-    this.#nodes.set(row, parts);
-    this.node.append(parts.node);
-    return parts;
-  }
-
-  #update(parts, piece) {
-    const { breadth: b, width: w } = piece;
-    const shown = this.classOf(piece);
-    const isSelected = this.selected.has(piece.row);
-    const pose = this.#previews.get(piece.row) ?? piece;
-    const label = this.label(piece);
-    const mark = [label, b, w, piece.missing, isSelected, classStyle(shown.live), shown.isAnchored, pose.x, pose.y, pose.angle, this.scale].join("|");
-    if (parts.mark === mark) return;
-    parts.mark = mark;
-    const set = (node, values) => Object.entries(values).forEach(([name, value]) => node.setAttribute(name, value));
-    set(parts.body, { x: -b / 2, y: -w / 2, width: b, height: w });
-    set(parts.sides, { d: `M${-b / 2} ${-w / 2}H${b / 2}M${-b / 2} ${w / 2}H${b / 2}` });
-    const { key, isAnchored } = shown;
-    const classes = ["piece", key ? classStyle(shown.live) : describe("").css, isSelected && "selected", isAnchored && !key && "anchored", piece.missing.length && "sizes-missing", piece.missing.includes("width") && "width-missing"];
-    set(parts.node, { class: classes.filter(Boolean).join(" "), "aria-selected": String(isSelected), "aria-label": label });
-    parts.title.textContent = label;
-    parts.sign.textContent = this.#sign(key, isAnchored);
-    parts.name.textContent = piece.item;
-    this.#put(parts, pose);
-    this.#markEnds(parts, piece, pose.angle);
-    this.#fitText(parts, piece);
+  #drawPiece(piece) {
+    const { row, item, breadth: b, width: w, missing } = piece;
+    const { x, y, angle } = this.pose(row);
+    const { key, isAnchored, live } = this.classOf(piece);
+    const [isSelected, label, fit] = [this.selected.has(row), this.label(piece), this.#fit(piece, angle)];
+    if (!this.#nodes.has(row)) this.#nodes.set(row, this.node.appendChild(element("g", { role: "option", "data-row": row })));
+    const node = this.#nodes.get(row);
+    const style = key ? classStyle(live) : describe("").css;
+    const classes = ["piece", style, isSelected && "selected", isAnchored && !key && "anchored", missing.length && "sizes-missing", missing.includes("width") && "width-missing"];
+    const values = { class: classes.filter(Boolean).join(" "), transform: translate(x, y), tabindex: row === this.active ? "0" : "-1", "aria-selected": String(isSelected), "aria-label": label };
+    for (const [name, value] of Object.entries(values)) if (node.getAttribute(name) !== value) node.setAttribute(name, value);
+    const isNamed = fit.isInside || isSelected || this.#besides.has(row);
+    render(svg`<title>${label}</title>
+      <g transform="rotate(${-angle})"><rect class="body" x=${-b / 2} y=${-w / 2} width=${b} height=${w}></rect>
+        <path class="sides" d="M${-b / 2} ${-w / 2}H${b / 2}M${-b / 2} ${w / 2}H${b / 2}"></path></g>${this.#unknownEnds(piece, angle)}
+      <g class="px" .style="transform: scale(var(--u)) rotate(${-fit.turn}deg)">
+        <text class="sign" .style="font-size: ${fit.size.toFixed(1)}px" x=${-fit.shift}>${key ? describe(key).sign : isAnchored ? "⚓" : "–"}</text>
+        <text class=${fit.isInside ? "name" : "name beside"} .style=${isNamed ? "" : "display: none"} x=${fit.isInside ? fit.size / 2 + 1 : 0} y=${fit.y}>${item}</text></g>`, node);
   }
 
   /** Question marks where it is not known how far a piece reaches. */
-  #markEnds(parts, { breadth: b, width: w, missing }, angle) {
+  #unknownEnds({ breadth: b, width: w, missing }, angle) {
     const ends = [...(missing.includes("width") ? [[0, w / 2], [0, -w / 2]] : []), ...(missing.includes("breadth") ? [[b / 2, 0], [-b / 2, 0]] : [])];
-    parts.unknown.replaceChildren(...ends.map((end) => {
+    return ends.map((end) => {
       const [x, y] = turnPoint(end, angle);
       const k = UNKNOWN_PX / Math.hypot(x, y);
-      return svg("g", { transform: `translate(${x.toFixed(4)} ${(-y).toFixed(4)})` }, svg("text", { class: "px unknown", x: x * k, y: -y * k, text: "?" }));
-    }));
+      return svg`<g transform=${translate(x, y)}><text class="px unknown" x=${x * k} y=${-y * k}>?</text></g>`;
+    });
   }
 
-  #sign(key, isAnchored) {
-    if (key) return describe(key).sign;
-    return isAnchored ? "⚓" : "–";
-  }
-
-  #put(parts, { x, y, angle }) {
-    if (parts.pose === `${x} ${y} ${angle}`) return;
-    parts.pose = `${x} ${y} ${angle}`;
-    parts.node.setAttribute("transform", `translate(${x.toFixed(4)} ${(-y).toFixed(4)})`);
-    parts.turned.setAttribute("transform", `rotate(${-angle})`);
-    parts.angle = angle;
-  }
-
-  /** Sign and name as large as the piece allows; the name along its longer side, upright or read from the right. */
-  #fitText(parts, piece) {
-    const [b, w] = [piece.breadth * this.scale, piece.width * this.scale];
-    const [long, short] = [Math.max(b, w), Math.min(b, w)];
+  /** Sign and name as large as the piece allows; the name along its longer side, upright or read from the right, else below it. */
+  #fit({ item, breadth, width }, angle) {
+    const [b, w] = [breadth * this.scale, width * this.scale];
+    const short = Math.min(b, w);
     const size = Math.min(MOST_SIGN, Math.max(LEAST_SIGN, 0.85 * short));
-    const room = long - size - 6;
-    const isNamed = short >= NAME_HEIGHT && room >= piece.item.length * LETTER;
-    const along = (((parts.angle + (w >= b ? 90 : 0)) % 180) + 180) % 180;
-    const shown = isNamed ? (along > 90 ? along - 180 : along) : 0;
-    parts.px.style.transform = `scale(var(--u)) rotate(${-shown}deg)`;
-    parts.sign.style.fontSize = `${size.toFixed(1)}px`;
-    parts.isNamed = isNamed || this.selected.has(piece.row);
-    parts.name.style.display = parts.isNamed ? "" : "none";
-    const shift = isNamed ? (piece.item.length * LETTER) / 2 + 2 : 0;
-    parts.sign.setAttribute("x", -shift);
-    parts.name.setAttribute("x", isNamed ? size / 2 + 1 : 0);
-    parts.name.setAttribute("y", isNamed ? 0 : Math.max(10, this.#reach(piece, parts.angle)) + 10);
-    parts.name.classList.toggle("beside", !isNamed);
+    const letters = item.length * LETTER;
+    if (short >= NAME_HEIGHT && Math.max(b, w) - size - 6 >= letters) {
+      const along = modulo(angle + (w >= b ? 90 : 0), 180);
+      return { isInside: true, size, turn: along > 90 ? along - 180 : along, shift: letters / 2 + 2, y: 0 };
+    }
+    const a = radians(angle);
+    const reach = (Math.abs(b * Math.sin(a)) + Math.abs(w * Math.cos(a))) / 2; // half its height on the screen
+    return { isInside: false, size, turn: 0, shift: 0, y: Math.max(10, reach) + 10 };
   }
 
   /** Zoomed in, names stand below pieces that have no room for them, where they cover neither a piece nor a name. */
-  #nameBeside() {
+  #placeNames() {
+    this.#besides.clear();
     if (this.scale < NAMED_FROM) return;
     const [k, pieces] = [this.scale, [...this.model.pieces.values()]];
     const taken = pieces.map((one) => boxOf(corners(one).map(([x, y]) => [x * k, -y * k])));
     for (const piece of pieces) {
-      const parts = this.#nodes.get(piece.row);
-      if (!parts || parts.isNamed) continue;
-      const [x, y, half] = [piece.x * k, -piece.y * k + Number(parts.name.getAttribute("y")), (piece.item.length * LETTER) / 2];
+      const fit = this.#fit(piece, piece.angle);
+      if (fit.isInside || this.selected.has(piece.row)) continue;
+      const [x, y, half] = [piece.x * k, -piece.y * k + fit.y, (piece.item.length * LETTER) / 2];
       const own = [x - half, y - NAME_HEIGHT / 2, x + half, y + NAME_HEIGHT / 2];
-      if (taken.some((one) => own[0] < one[2] && one[0] < own[2] && own[1] < one[3] && one[1] < own[3])) continue;
+      if (taken.some((one) => boxesMeet(own, one))) continue;
       taken.push(own);
-      parts.name.style.display = "";
+      this.#besides.add(piece.row);
     }
-  }
-
-  /** Half the height of a piece on the screen. */
-  #reach({ breadth, width }, angle) {
-    const a = (angle * Math.PI) / 180;
-    return ((Math.abs(breadth * Math.sin(a)) + Math.abs(width * Math.cos(a))) / 2) * this.scale;
   }
 
   zoom(scale) {
     this.scale = scale;
-    for (const [row, parts] of this.#nodes) {
-      const piece = this.model.pieces.get(row);
-      if (piece) this.#fitText(parts, piece);
-    }
-    this.#nameBeside();
+    this.draw();
   }
 
   // ---- while dragged
 
-  /** Show pieces elsewhere than they stand: Map of rows to {x, y, angle}. */
+  /** Show pieces elsewhere than they stand: [{row, x, y, angle}]. */
   preview(poses) {
-    this.#previews = poses;
-    for (const [row, pose] of poses) {
-      const parts = this.#nodes.get(row);
-      if (parts) parts.mark = "";
-      if (parts) this.#put(parts, pose);
-      if (parts && pose.angle !== undefined) this.#markEnds(parts, this.model.pieces.get(row), pose.angle);
-      if (parts) this.#fitText(parts, this.model.pieces.get(row));
-    }
+    this.#previews = new Map(poses.map((one) => [one.row, one]));
+    for (const { row } of poses) if (this.model.pieces.has(row)) this.#drawPiece(this.model.pieces.get(row));
   }
 
   endPreview() {
     const rows = [...this.#previews.keys()];
-    this.#previews = new Map();
-    for (const row of rows) {
-      const [parts, piece] = [this.#nodes.get(row), this.model.pieces.get(row)];
-      if (parts && piece) this.#update(parts, piece);
-    }
+    this.#previews.clear();
+    for (const row of rows) if (this.model.pieces.has(row)) this.#drawPiece(this.model.pieces.get(row));
   }
 
   /** Where a piece is shown. */
   pose(row) {
     const piece = this.model.pieces.get(row);
-    return piece && { ...piece, ...this.#previews.get(row) };
+    const { x, y, angle } = this.#previews.get(row) ?? piece ?? {};
+    return piece && { ...piece, x, y, angle };
   }
 
   // ---- classes and words
@@ -205,16 +145,17 @@ export class PieceLayer {
   }
 
   /** What is said of a piece: name, what it is, class, position. */
-  label(piece) {
-    const { key, word, live } = this.classOf(piece);
-    const unit = this.model.unit;
-    const parts = [[piece.item, piece.description].filter(Boolean).join(", "), key ? t("class {word}", { word: describe(key).word }) : word || describe("").word];
-    if (chanceText(live)) parts.push(t("chance {chance}", { chance: chanceText(live) }));
-    for (const [said] of basisWords(live)) parts.push(said);
+  label({ row, item, description, anchored, missing, x, y, angle }) {
+    const { key, word, live } = this.classOf({ row, anchored });
+    const chance = chanceText(live);
     const sheet = this.store.sheet("Items");
-    for (const name of piece.missing) parts.push(t("{size} is not known", { size: sheet.column(name)?.label ?? name }));
-    parts.push(t("X {x}, Y {y}, angle {angle}°", { x: shownLength(piece.x, unit), y: shownLength(piece.y, unit), angle: number(piece.angle) }));
-    return parts.join("; ");
+    const { model } = this;
+    return [
+      description ? `${item}, ${description}` : item, key ? t("class {word}", { word: describe(key).word }) : word || describe("").word,
+      ...(chance ? [t("chance {chance}", { chance })] : []), ...basisWords(live).map(([said]) => said),
+      ...missing.map((name) => t("{size} is not known", { size: sheet.column(name)?.label ?? name })),
+      t("X {x}, Y {y}, angle {angle}°", { x: model.shownLength(x), y: model.shownLength(y), angle: number(angle) }),
+    ].join("; ");
   }
 
   // ---- keyboard
@@ -224,39 +165,23 @@ export class PieceLayer {
     return [...this.model.pieces.values()].sort((a, b) => Math.round(b.y - a.y) || a.x - b.x).map((one) => one.row);
   }
 
-  #setTabStops() {
-    for (const [row, parts] of this.#nodes) parts.node.setAttribute("tabindex", row === this.active ? "0" : "-1");
-  }
-
   activate(row) {
     this.active = row;
-    this.#setTabStops();
+    for (const [one, node] of this.#nodes) node.setAttribute("tabindex", one === row ? "0" : "-1");
   }
 
   focus(row = this.active) {
     this.activate(row);
-    this.#nodes.get(row)?.node.focus({ preventScroll: true });
-  }
-
-  select(rows) {
-    const changed = [...new Set([...this.selected, ...rows])];
-    this.selected = new Set(rows);
-    for (const row of changed) {
-      const [parts, piece] = [this.#nodes.get(row), this.model.pieces.get(row)];
-      if (parts && piece) this.#update(parts, piece);
-    }
-    this.#nameBeside();
-    if (rows.length && this.model.pieces.has(rows[0])) this.activate(rows[0]);
-    this.#raise(rows);
+    this.#nodes.get(row)?.focus({ preventScroll: true });
   }
 
   /** Selected pieces lie on top; focus survives, as the nodes that are moved past stay where they are. */
-  #raise(rows) {
-    if (rows.length > 20) return;
-    for (const row of rows) {
-      const node = this.#nodes.get(row)?.node;
-      if (!node || node.contains(document.activeElement) || node === this.node.lastChild) continue;
-      this.node.append(node);
-    }
+  select(rows) {
+    this.selected = new Set(rows);
+    if (this.model.pieces.has(rows[0])) this.active = rows[0];
+    this.draw();
+    if (rows.length > RAISED_UP_TO) return;
+    const nodes = rows.map((row) => this.#nodes.get(row)).filter((node) => node && !node.contains(document.activeElement));
+    for (const node of nodes) if (node !== this.node.lastChild) this.node.append(node);
   }
 }

@@ -1,9 +1,101 @@
-// Pointers on the plan: wheel, pinch and pan move the view; everything else goes to the tool in use.
+// What of the floor is seen, metres to pixels, and pointers: wheel, pinch and pan move the view, all else goes to the tool in use.
 
+const LEAST = 2; // pixels a metre
+const MOST = 1200;
+const MARGIN = 24;
 const WHEEL = 0.0016; // zoom a pixel of the wheel
 const LINE_PX = 16;
 const CLICK_PX = 4;
 const DOUBLE_MS = 450;
+
+const bound = (scale) => Math.min(MOST, Math.max(LEAST, scale));
+
+/** Whether a pointer went far enough to be a drag. */
+export const isDrag = ([a, b], [c, d]) => Math.hypot(c - a, d - b) >= CLICK_PX;
+
+/** The world group of the drawing is in metres with Y down. */
+export class Viewport extends EventTarget {
+  scale = 40;
+  left = 0; // of the origin in the drawing [px]
+  top = 0;
+  #size = [0, 0];
+
+  constructor({ svg, world }) {
+    super();
+    Object.assign(this, { svg, world });
+    new ResizeObserver(() => this.#resize()).observe(svg);
+  }
+
+  get size() {
+    return [this.svg.clientWidth || 1, this.svg.clientHeight || 1];
+  }
+
+  /** Keep what is in the middle there. */
+  #resize() {
+    const [w, h] = this.size;
+    const [oldW, oldH] = this.#size;
+    this.#size = [w, h];
+    if (w < 2) return;
+    if (this.wanted) this.fit(this.wanted); // also one that was asked for before there was any room
+    else if (oldW >= 2) this.set(this.scale, this.left + (w - oldW) / 2, this.top + (h - oldH) / 2);
+  }
+
+  set(scale, left, top) {
+    Object.assign(this, { scale: bound(scale), left, top });
+    this.world.setAttribute("transform", `translate(${left.toFixed(2)} ${top.toFixed(2)}) scale(${this.scale.toFixed(4)})`);
+    this.world.style.setProperty("--u", String(1 / this.scale));
+    this.dispatchEvent(new Event("view"));
+  }
+
+  /** Show a box [x0, y0, x1, y1] whole; it is kept so until the user zooms or pans. */
+  fit(box) {
+    this.wanted = box;
+    const [w, h] = this.size;
+    if (w < 2) return;
+    const [x0, y0, x1, y1] = box;
+    const margin = 2 * Math.min(MARGIN, w / 20);
+    const scale = bound(Math.min((w - margin) / Math.max(x1 - x0, 0.5), (h - margin) / Math.max(y1 - y0, 0.5)));
+    this.set(scale, w / 2 - ((x0 + x1) / 2) * scale, h / 2 + ((y0 + y1) / 2) * scale);
+  }
+
+  /** Zoom by a factor about a point of the drawing [px]. */
+  zoom(factor, px = this.size[0] / 2, py = this.size[1] / 2) {
+    this.wanted = null;
+    const scale = bound(this.scale * factor);
+    const k = scale / this.scale;
+    this.set(scale, px - (px - this.left) * k, py - (py - this.top) * k);
+  }
+
+  pan(dx, dy) {
+    this.wanted = null;
+    this.set(this.scale, this.left + dx, this.top + dy);
+  }
+
+  /** Bring a point of the floor into view, if it is not; of the height so much is covered at the bottom [px]. */
+  reveal(point, covered = 0) {
+    const [w, whole] = this.size;
+    const margin = Math.min(60, w / 6);
+    const shift = (at, size) => Math.max(margin - at, 0) || Math.min(size - margin - at, 0);
+    const [px, py] = this.toScreen(point);
+    const [dx, dy] = [shift(px, w), shift(py, whole - covered)];
+    if (dx || dy) this.pan(dx, dy);
+  }
+
+  /** Pixels of the drawing at a place of the window. */
+  toLocal(clientX, clientY) {
+    const box = this.svg.getBoundingClientRect();
+    return [clientX - box.left, clientY - box.top];
+  }
+
+  /** Metres at a pixel of the drawing. */
+  toWorld = ([px, py]) => [(px - this.left) / this.scale, (this.top - py) / this.scale];
+
+  toScreen = ([x, y]) => [this.left + x * this.scale, this.top - y * this.scale];
+
+  get centre() {
+    return this.toWorld(this.size.map((one) => one / 2));
+  }
+}
 
 export class PlanPointer {
   #touches = new Map();
@@ -13,11 +105,9 @@ export class PlanPointer {
   #isSpace = false;
   #click = null;
 
-  /** @param {{viewport: object, tool: () => object, canEdit: () => boolean}} parts */
-  constructor(parts) {
-    Object.assign(this, parts);
-    const { svg } = parts.viewport;
-    this.svg = svg;
+  constructor({ viewport, currentTool, canEdit }) {
+    Object.assign(this, { viewport, currentTool, canEdit, svg: viewport.svg });
+    const { svg } = this;
     svg.addEventListener("pointerdown", (event) => this.#down(event));
     svg.addEventListener("pointermove", (event) => this.#move(event));
     svg.addEventListener("pointerup", (event) => this.#up(event));
@@ -30,13 +120,9 @@ export class PlanPointer {
   }
 
   /** A place of the window as tools take it. */
-  point(event) {
-    const px = this.viewport.toLocal(event.clientX, event.clientY);
-    return { at: this.viewport.toWorld(px), px, target: event.target, alt: event.altKey, shift: event.shiftKey, more: event.shiftKey || event.ctrlKey || event.metaKey, isTouch: event.pointerType === "touch" };
-  }
-
-  get isBusy() {
-    return this.#tool !== null;
+  #point({ clientX, clientY, target, altKey, shiftKey, ctrlKey, metaKey }) {
+    const px = this.viewport.toLocal(clientX, clientY);
+    return { at: this.viewport.toWorld(px), px, target, alt: altKey, more: shiftKey || ctrlKey || metaKey };
   }
 
   #space(event, isDown) {
@@ -48,62 +134,52 @@ export class PlanPointer {
   }
 
   #down(event) {
-    if (event.pointerType === "touch") this.#touches.set(event.pointerId, [event.clientX, event.clientY]);
+    const [at, isTouch] = [[event.clientX, event.clientY], event.pointerType === "touch"];
+    if (isTouch) this.#touches.set(event.pointerId, at);
     this.svg.setPointerCapture(event.pointerId);
     if (this.#touches.size === 2) {
-      this.#endTool(true);
-      this.#pan = null;
+      this.#tool?.cancel?.();
+      this.#tool = this.#pan = null;
       this.#pinch = this.#spread();
-      return;
     }
-    if (this.#touches.size > 2) return;
-    const isForView = event.button === 1 || this.#isSpace || (event.pointerType === "touch" && this.#pansByTouch(event));
+    if (this.#touches.size > 1) return;
     if (event.button === 1) event.preventDefault();
-    if (isForView) this.#pan = { from: [event.clientX, event.clientY], first: [event.clientX, event.clientY], event };
+    if (event.button === 1 || this.#isSpace || (isTouch && this.#pansByTouch(event))) this.#pan = { from: at, first: at, event };
     else if (event.button === 0) {
-      this.#tool = this.tool();
-      this.#tool.down?.(this.point(event));
+      this.#tool = this.currentTool();
+      this.#tool.down?.(this.#point(event));
     }
   }
 
   /** One finger moves the view, unless it lies on something that can be dragged or a tool waits for points. */
-  #pansByTouch(event) {
-    if (!this.canEdit()) return true;
-    return !this.tool().takesTouch && !event.target.closest(".piece, .handle");
+  #pansByTouch({ target }) {
+    return !this.canEdit() || (!this.currentTool().takesTouch && !target.closest(".piece, .handle"));
   }
 
   #move(event) {
-    if (this.#touches.has(event.pointerId)) this.#touches.set(event.pointerId, [event.clientX, event.clientY]);
-    if (this.#pinch && this.#touches.size === 2) return this.#pinchMove();
-    if (this.#pan) {
+    const at = [event.clientX, event.clientY];
+    if (this.#touches.has(event.pointerId)) this.#touches.set(event.pointerId, at);
+    if (this.#pinch && this.#touches.size === 2) this.#pinchMove();
+    else if (this.#pan) {
       const [x, y] = this.#pan.from;
-      this.viewport.pan(event.clientX - x, event.clientY - y);
-      this.#pan.from = [event.clientX, event.clientY];
-      return null;
-    }
-    return (this.#tool ?? this.tool()).move?.(this.point(event), this.#tool !== null);
+      this.#pan.from = at;
+      this.viewport.pan(at[0] - x, at[1] - y);
+    } else (this.#tool ?? this.currentTool()).move?.(this.#point(event), this.#tool !== null);
   }
 
   #up(event, isCancelled = false) {
+    const [tool, pan] = [this.#tool, this.#pan];
+    this.#tool = this.#pan = null;
     this.#touches.delete(event.pointerId);
     if (this.#touches.size < 2) this.#pinch = null;
-    if (this.#pan) {
-      const [x, y] = this.#pan.first;
-      const isTap = event.pointerType === "touch" && Math.hypot(event.clientX - x, event.clientY - y) < 2 * CLICK_PX;
-      const down = this.#pan.event;
-      this.#pan = null;
-      if (isTap && !isCancelled) this.tool().tap?.({ ...this.point(down), more: false });
-      return;
+    if (pan) {
+      const isTap = event.pointerType === "touch" && Math.hypot(event.clientX - pan.first[0], event.clientY - pan.first[1]) < 2 * CLICK_PX;
+      if (isTap && !isCancelled) this.currentTool().tap?.({ ...this.#point(pan.event), more: false });
+    } else if (tool && isCancelled) tool.cancel?.();
+    else if (tool) {
+      tool.up?.(this.#point(event));
+      this.#countClick(event);
     }
-    if (!this.#tool) return;
-    const tool = this.#tool;
-    this.#tool = null;
-    if (isCancelled) {
-      tool.cancel?.();
-      return;
-    }
-    tool.up?.(this.point(event));
-    this.#countClick(event);
   }
 
   /** Two clicks at one place. The browser tells of none where the first replaced what lies there. */
@@ -112,12 +188,8 @@ export class PlanPointer {
     const now = { at: [event.clientX, event.clientY], time: event.timeStamp };
     const isSecond = before && now.time - before.time < DOUBLE_MS && !isDrag(before.at, now.at);
     this.#click = isSecond ? null : now;
-    if (isSecond) this.tool().double?.({ ...this.point(event), target: targetAt(event) });
-  }
-
-  #endTool() {
-    this.#tool?.cancel?.();
-    this.#tool = null;
+    const target = document.elementFromPoint(...now.at) ?? event.target; // of a captured pointer it is the drawing itself
+    if (isSecond) this.currentTool().double?.({ ...this.#point(event), target });
   }
 
   #spread() {
@@ -127,11 +199,10 @@ export class PlanPointer {
 
   #pinchMove() {
     const before = this.#pinch;
-    const now = this.#spread();
-    const [px, py] = this.viewport.toLocal(...now.centre);
-    this.viewport.pan(now.centre[0] - before.centre[0], now.centre[1] - before.centre[1]);
-    this.viewport.zoom(now.distance / before.distance, px, py);
-    this.#pinch = now;
+    this.#pinch = this.#spread();
+    const { centre, distance } = this.#pinch;
+    this.viewport.pan(centre[0] - before.centre[0], centre[1] - before.centre[1]);
+    this.viewport.zoom(distance / before.distance, ...this.viewport.toLocal(...centre));
   }
 
   #wheel(event) {
@@ -141,9 +212,3 @@ export class PlanPointer {
     this.viewport.zoom(Math.exp(-Math.max(-250, Math.min(250, px)) * speed), ...this.viewport.toLocal(event.clientX, event.clientY));
   }
 }
-
-/** What lies under a pointer; events of captured pointers name the drawing itself. */
-const targetAt = ({ clientX, clientY, target }) => document.elementFromPoint(clientX, clientY) ?? target;
-
-/** Whether a pointer went far enough to be a drag. */
-export const isDrag = ([a, b], [c, d]) => Math.hypot(c - a, d - b) >= CLICK_PX;

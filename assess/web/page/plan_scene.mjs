@@ -2,12 +2,10 @@
 
 import { svg } from "./elements.mjs";
 import { PieceLayer } from "./plan_pieces.mjs";
-import { boxOf, direction, moveRing, turnPoint } from "./plan_geometry.mjs";
-import { DOOR } from "./plan_model.mjs";
-import { nearestWall, sidesOf } from "./plan_snap.mjs";
-import { number, t } from "./texts.mjs";
+import { boxOf, direction, distance, middle, moveRing, nearestWall, turnPoint } from "./plan_geometry.mjs";
+import { DOOR, STATES, isPlaced, stateCss } from "./plan_model.mjs";
+import { number } from "./texts.mjs";
 
-const SIGNS = { open: "✓", doubtful: "≈", not_known: "?", blocked: "✕" };
 const STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500];
 const GRID_PX = 22; // least distance of grid lines
 const BAR_PX = 70; // least length of the scale bar
@@ -23,18 +21,16 @@ const MARKS = {
 
 const path = (ring, isClosed = true) => ring.map(([x, y], i) => `${i ? "L" : "M"}${x} ${-y}`).join("") + (isClosed ? "Z" : "");
 
+/** A group at a point, with attributes. */
+const groupAt = ([x, y], props, ...children) => svg("g", { transform: `translate(${x} ${-y})`, ...props }, ...children);
+
 /** Question marks on both sides of what a piece of unknown width covers. */
 function markSides(ring, { x, y, angle }) {
   const [u0, v0, u1, v1] = boxOf(ring.map((one) => turnPoint([one[0] - x, one[1] - y], -angle)));
-  return [v0, v1].map((v) => {
-    const [dx, dy] = turnPoint([(u0 + u1) / 2, v], angle);
-    return svg("g", { transform: `translate(${x + dx} ${-(y + dy)})` }, svg("text", { class: "px unknown", text: "?" }));
-  });
+  return [v0, v1].map((v) => groupAt(turnPoint([(u0 + u1) / 2, v], angle, [x, y]), null, svg("text", { class: "px unknown", text: "?" })));
 }
 
-/** How a state is called in the style sheet: as the reports, with what stands in the way already apart. */
-const stateClass = (state) => (state ? `state-${state.standing ? "standing" : state.state.replace("_", "-")}` : "state-none");
-const signOf = (state) => (state ? SIGNS[state.state] ?? "?" : "");
+const signOf = (state) => svg("text", { text: STATES[state.state] ?? "?" });
 
 export class Scene {
   falls = "selected"; // selected, all, none
@@ -43,9 +39,8 @@ export class Scene {
   #pictureShown = null;
   #frame = null;
 
-  constructor(model, store, viewport) {
-    Object.assign(this, { model, store, viewport });
-    this.pieces = new PieceLayer(model, store);
+  constructor({ model, store, viewport, bar }) {
+    Object.assign(this, { model, store, viewport, bar, pieces: new PieceLayer(model, store) });
     const layer = (name, props) => (this[name] = svg("g", { class: name, ...props }));
     viewport.world.append(
       (this.image = svg("image", { class: "picture", preserveAspectRatio: "none", hidden: "" })), layer("grid", { "aria-hidden": "true" }),
@@ -90,8 +85,8 @@ export class Scene {
     for (let i = Math.ceil(y0 / step); i <= y1 / step; i++) add(i, `M${x0} ${(-i * step).toFixed(4)}H${x1}`);
     this.grid.replaceChildren(svg("path", { d: lines[0].join("") }), svg("path", { class: "fifth", d: lines[1].join("") }));
     const bar = stepFor(BAR_PX);
-    this.bar = { px: bar * viewport.scale, text: `${number(Number((bar / factor).toPrecision(6)))} ${unit}` };
-    this.onScale?.(this.bar);
+    this.bar.style.width = `${bar * viewport.scale}px`;
+    this.bar.textContent = `${number(Number((bar / factor).toPrecision(6)))} ${unit}`;
   }
 
   /** The picture where it lies: where it is placed, else fitted to the frame, by the shape that it has. */
@@ -110,10 +105,9 @@ export class Scene {
   placement() {
     const { picture, frame } = this.model.plan ?? {};
     if (!picture) return null;
-    if (picture.placed) return { left: picture.left, bottom: picture.bottom, width: picture.width, turn: picture.turn };
     const [x0, y0, x1, y1] = frame;
-    const width = picture.width ?? Math.min(x1 - x0, (y1 - y0) / picture.aspect);
-    return { left: picture.left ?? x0, bottom: picture.bottom ?? y0, width, turn: picture.turn ?? 0 };
+    const { left, bottom, width, turn, aspect } = picture;
+    return { left: left ?? x0, bottom: bottom ?? y0, width: width ?? Math.min(x1 - x0, (y1 - y0) / aspect), turn: turn ?? 0 };
   }
 
   // ---- routes
@@ -121,13 +115,12 @@ export class Scene {
   drawRoutes() {
     const { model } = this;
     if (!model.plan) return;
-    const rooms = [...model.places.values()].filter((one) => one.outline);
-    const walls = rooms.flatMap((one) => sidesOf(one.outline));
-    this.rooms.replaceChildren(...rooms.map((one) => this.#room(one)), ...[...model.places.values()].map((one) => this.#opening(one, walls)).filter(Boolean));
-    const segments = this.showsRoutes ? [...model.segments.values()] : [];
-    this.bands.replaceChildren(...segments.map((one) => this.#band(one)).filter(Boolean));
-    const marks = this.showsRoutes ? [...model.places.values()].filter((one) => one.x !== null && one.y !== null) : [];
-    this.marks.replaceChildren(...segments.map((one) => this.#segmentSign(one)).filter(Boolean), ...marks.map((one) => this.#mark(one)));
+    const [places, { outlined, walls }] = [[...model.places.values()], model];
+    const segments = this.showsRoutes ? [...model.segments.values()].filter((one) => one.points.length === 2) : [];
+    const marks = this.showsRoutes ? places.filter(isPlaced) : [];
+    this.rooms.replaceChildren(...outlined.map((one) => this.#room(one)), ...places.flatMap((one) => this.#opening(one, walls)));
+    this.bands.replaceChildren(...segments.map((one) => this.#band(one)));
+    this.marks.replaceChildren(...segments.flatMap((one) => this.#segmentSign(one)), ...marks.map((one) => this.#mark(one)));
     this.viewport.svg.classList.toggle("states-old", model.routesOld);
   }
 
@@ -136,98 +129,89 @@ export class Scene {
     return selection.sheet === sheet && (selection.rows.includes(row) || selection.row === row);
   }
 
-  #title(name, state) {
-    return svg("title", { text: state ? [name, state.word, state.detail].filter(Boolean).join(": ") : name });
+  /** The group of a place or a segment: its class by its state, and a title. */
+  #group(css, sheet, row, name, props, ...children) {
+    const state = this.model.stateOf(sheet === "Places" ? "place" : "segment", row);
+    const text = state ? [name, state.word, state.detail].filter(Boolean).join(": ") : name;
+    const classes = `${css} ${stateCss(state)}${this.#isSelected(sheet, row) ? " selected" : ""}`;
+    return svg("g", { class: classes, [sheet === "Places" ? "data-place" : "data-segment"]: row, ...props }, svg("title", { text }), ...children);
   }
 
-  #room(place) {
-    const state = this.model.stateOf("place", place.row);
-    const classes = ["room", stateClass(state), this.#isSelected("Places", place.row) && "selected"].filter(Boolean).join(" ");
-    return svg("g", { class: classes, "data-place": place.row }, this.#title(place.place, state), svg("path", { d: path(place.outline) }));
+  #room({ row, place, outline }) {
+    return this.#group("room", "Places", row, place, null, svg("path", { d: path(outline) }));
   }
 
   /** A door or an exit on a wall: a gap as wide as it. */
   #opening(place, walls) {
     const { x, y, kind } = place;
-    const wall = (kind === "door" || kind === "exit") && x !== null && y !== null && nearestWall([x, y], walls, ON_WALL);
-    if (!wall) return null;
+    const wall = (kind === "door" || kind === "exit") && isPlaced(place) && nearestWall([x, y], walls, ON_WALL);
+    if (!wall) return [];
     const [half, jamb] = [(this.model.widthOf(place) ?? DOOR) / 2, 5 / this.viewport.scale];
-    return svg("g", { class: "opening", transform: `translate(${x} ${-y}) rotate(${-direction(wall.a, wall.b)})`, "aria-hidden": "true" },
+    return groupAt([x, y], { class: "opening", transform: `translate(${x} ${-y}) rotate(${-direction(wall.a, wall.b)})`, "aria-hidden": "true" },
       svg("path", { class: "gap", d: `M${-half} 0H${half}` }), svg("path", { d: `M${-half} ${-jamb}V${jamb}M${half} ${-jamb}V${jamb}` }));
   }
 
-  #band(segment) {
-    const state = this.model.stateOf("segment", segment.row);
-    if (segment.points.length < 2) return null;
-    const classes = ["band", stateClass(state), this.#isSelected("Routes", segment.row) && "selected"].filter(Boolean).join(" ");
-    const name = `${segment.route}, ${segment.segment}`;
-    return svg("g", { class: classes, "data-segment": segment.row }, this.#title(name, state),
-      segment.outline && svg("path", { class: "ground", d: path(segment.outline) }), svg("path", { class: "line", d: path(segment.points, false) }));
+  #band({ row, route, segment, points, outline }) {
+    return this.#group("band", "Routes", row, `${route}, ${segment}`, null,
+      outline && svg("path", { class: "ground", d: path(outline) }), svg("path", { class: "line", d: path(points, false) }));
   }
 
-  #segmentSign(segment) {
-    const state = this.model.stateOf("segment", segment.row);
-    if (!state || segment.points.length < 2) return null;
-    const [[x0, y0], [x1, y1]] = segment.points;
-    const length = Math.hypot(x1 - x0, y1 - y0) * this.viewport.scale;
-    const isLong = length > (state.state === "open" ? SIGN_PX : 1);
-    const held = state.word.includes("⚓") ? "⚓" : "";
-    return isLong && svg("g", { class: `state-sign ${stateClass(state)}`, transform: `translate(${(x0 + x1) / 2} ${-(y0 + y1) / 2})`, "data-segment": segment.row, "aria-hidden": "true" },
-      svg("g", { class: "px" }, svg("circle", { r: 8 }), svg("text", { text: signOf(state) }), held && svg("text", { class: "held", x: 15, text: held })));
+  #segmentSign({ row, points }) {
+    const state = this.model.stateOf("segment", row);
+    const length = distance(...points) * this.viewport.scale;
+    if (!state || length <= (state.state === "open" ? SIGN_PX : 1)) return [];
+    const held = state.word.includes("⚓") && svg("text", { class: "held", x: 15, text: "⚓" });
+    return groupAt(middle(...points), { class: `state-sign ${stateCss(state)}`, "data-segment": row, "aria-hidden": "true" },
+      svg("g", { class: "px" }, svg("circle", { r: 8 }), signOf(state), held));
   }
 
   #mark(place) {
-    const state = this.model.stateOf("place", place.row);
-    const isSelected = this.#isSelected("Places", place.row);
-    const classes = ["mark", `mark-${place.kind || "point"}`, stateClass(state), isSelected && "selected"].filter(Boolean).join(" ");
-    const sign = state && svg("g", { class: "state-sign", "aria-hidden": "true" }, svg("circle", { r: 8 }), svg("text", { text: signOf(state) }));
-    return svg("g", { class: classes, transform: `translate(${place.x} ${-place.y})`, "data-place": place.row }, this.#title(place.place, state),
-      svg("g", { class: "px" }, svg("circle", { class: "reach", r: 12 }), sign || svg("path", { d: MARKS[place.kind] ?? MARKS.corridor }), this.#name(place, isSelected)));
+    const { row, kind, x, y } = place;
+    const state = this.model.stateOf("place", row);
+    const sign = state ? svg("g", { class: "state-sign", "aria-hidden": "true" }, svg("circle", { r: 8 }), signOf(state)) : svg("path", { d: MARKS[kind] ?? MARKS.corridor });
+    return this.#group(`mark mark-${kind || "point"}`, "Places", row, place.place, { transform: `translate(${x} ${-y})` },
+      svg("g", { class: "px" }, svg("circle", { class: "reach", r: 12 }), sign, this.#name(place)));
   }
 
   /** The name of a place; of a room or a corridor along it, and left out where there is no room for it. */
-  #name({ place, outline }, isSelected) {
+  #name({ row, place, outline }) {
     const text = (props) => svg("text", { class: outline ? "place-name outlined" : "place-name", y: 18, text: place, ...props });
     if (!outline) return text();
     const [x0, y0, x1, y1] = boxOf(outline);
     const fits = (metres) => metres * this.viewport.scale >= place.length * LETTER_PX;
-    return fits(x1 - x0) || isSelected ? text() : fits(y1 - y0) && text({ transform: "rotate(-90)" });
+    return fits(x1 - x0) || this.#isSelected("Places", row) ? text() : fits(y1 - y0) && text({ transform: "rotate(-90)" });
   }
 
   // ---- what pieces cover when they fall
 
   drawFalls() {
     const { pieces } = this;
-    const rows = this.falls === "all" ? [...this.model.pieces.keys()] : this.falls === "none" ? [] : [...pieces.selected];
-    const falls = rows.flatMap((row) => {
-      const piece = this.model.pieces.get(row);
-      const pose = pieces.pose(row);
-      return piece && pose ? piece.fallen.map((ring) => [moveRing(ring, piece, pose), piece.missing.includes("width") && pose]) : [];
-    });
-    this.fallen.replaceChildren(...falls.flatMap(([ring, open]) => [svg("path", { d: path(ring) }), ...(open ? markSides(ring, open) : [])]));
+    const rows = { all: [...this.model.pieces.keys()], none: [] }[this.falls] ?? [...pieces.selected];
+    this.fallen.replaceChildren(...rows.flatMap((row) => {
+      const [piece, pose] = [this.model.pieces.get(row), pieces.pose(row)];
+      const rings = (piece?.fallen ?? []).map((ring) => moveRing(ring, piece, pose));
+      return rings.flatMap((ring) => [svg("path", { d: path(ring) }), ...(piece.missing.includes("width") ? markSides(ring, pose) : [])]);
+    }));
   }
 
   // ---- drafts
 
-  /** Draw guides and what is being drawn: [{class, points, isClosed}], and texts [{at, text}]. */
-  sketch(lines = [], texts = []) {
-    const drawn = lines.map(({ name, points, isClosed = false }) => svg("path", { class: name, d: path(points, isClosed) }));
-    const dots = lines.filter((one) => one.dots).flatMap((one) => one.points).map(([x, y]) => svg("g", { transform: `translate(${x} ${-y})` }, svg("circle", { class: "px dot", r: 4 })));
-    const words = texts.map(({ at, text }) => svg("g", { transform: `translate(${at[0]} ${-at[1]})` }, svg("text", { class: "px readout", y: -10, text })));
-    this.draft.replaceChildren(...drawn, ...dots, ...words);
+  /** Draw what is being drawn, [{name, points, isClosed, dots}], texts, [{at, text}], and guides, as lines of two points. */
+  sketch(lines = [], texts = [], guides = []) {
+    const all = [...lines, ...guides.map((points) => ({ name: "guide", points }))];
+    const dots = lines.filter((one) => one.dots).flatMap((one) => one.points);
+    this.draft.replaceChildren(
+      ...all.map(({ name, points, isClosed = false }) => svg("path", { class: name, d: path(points, isClosed) })),
+      ...dots.map((at) => groupAt(at, null, svg("circle", { class: "px dot", r: 4 }))),
+      ...texts.map(({ at, text }) => groupAt(at, null, svg("text", { class: "px readout", y: -10, text }))));
   }
 
   /** Handles: of the corners of a selected place, of turning a selected piece or the picture. */
   showHandles(handles) {
-    const node = ({ name, at, label, data = {}, stem }) => svg("g", null,
-      stem && svg("path", { class: "stem", d: path([stem, at], false) }),
-      svg("g", { class: `handle ${name}`, transform: `translate(${at[0]} ${-at[1]})`, ...Object.fromEntries(Object.entries(data).map(([key, value]) => [`data-${key}`, value])) },
+    this.handles.replaceChildren(...handles.map(({ name, at, label, data = {}, stem }) => {
+      const props = Object.fromEntries(Object.entries(data).map(([key, value]) => [`data-${key}`, value]));
+      return svg("g", null, stem && svg("path", { class: "stem", d: path([stem, at], false) }), groupAt(at, { class: `handle ${name}`, ...props },
         svg("title", { text: label }), svg("circle", { class: "px reach", r: 12 }), svg("circle", { class: "px", r: name === "midpoint" ? 4 : 6 })));
-    this.handles.replaceChildren(...handles.map(node));
-  }
-
-  legend() {
-    return [["open", t("open")], ["doubtful", t("doubtful")], ["not-known", t("not known")], ["blocked", t("blocked")], ["standing", t("blocked as it stands")]]
-      .map(([key, word]) => ({ css: `state-${key}`, sign: SIGNS[key.replace("-", "_")] ?? SIGNS.blocked, word }));
+    }));
   }
 }

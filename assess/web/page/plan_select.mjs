@@ -1,9 +1,7 @@
 // The tool in use at first: select, drag and turn pieces; move places and the corners of their outlines; a frame selects.
 
-import { boxOf, corners, direction, distance, middle, roundTo, turnPoint } from "./plan_geometry.mjs";
+import { boxOf, corners, direction, distance, middle, rectangle, roundTo, sidesOf, snapPoint, snapSides, turnPoint, wholeAngle } from "./plan_geometry.mjs";
 import { isDrag } from "./plan_pointer.mjs";
-import { lineOf, sidesOf, snapPoint, snapSides } from "./plan_snap.mjs";
-import { shownLength } from "./plan_pieces.mjs";
 import { t } from "./texts.mjs";
 
 const SNAP_PX = 9;
@@ -15,24 +13,18 @@ export class SelectTool {
   snaps = true;
   #gesture = null;
 
-  /** @param {{model, store, scene, viewport, edits, say, canEdit}} parts */
   constructor(parts) {
-    Object.assign(this, parts);
-  }
-
-  get pieces() {
-    return this.scene.pieces;
+    Object.assign(this, parts, { pieces: parts.scene.pieces });
   }
 
   // ---- pointers
 
   down(point) {
-    const { target } = point;
-    const handle = target.closest(".handle");
+    const handle = point.target.closest(".handle");
+    const piece = point.target.closest(".piece");
     if (handle && this.canEdit()) this.#gesture = this.#onHandle(handle, point);
-    else if (target.closest(".piece")) this.#gesture = this.#onPiece(Number(target.closest(".piece").dataset.row), point);
-    else this.#gesture = this.#onGround(target, point);
-    if (this.#gesture) Object.assign(this.#gesture, { from: point, isMoved: false });
+    else this.#gesture = piece ? this.#onPiece(Number(piece.dataset.row), point) : this.#onGround(point);
+    Object.assign(this.#gesture, { from: point, isMoved: false });
   }
 
   move(point, isDown) {
@@ -46,14 +38,14 @@ export class SelectTool {
     gesture.last = point;
     gesture.frame ??= requestAnimationFrame(() => {
       gesture.frame = null;
-      if (gesture === this.#gesture && gesture.last) gesture.drag?.(gesture.last, gesture.from);
+      if (gesture === this.#gesture) gesture.drag?.(gesture.last, gesture.from);
     });
   }
 
   up(point) {
     const gesture = this.#gesture;
-    this.#gesture = null;
     if (!gesture) return;
+    this.#gesture = null;
     if (gesture.isMoved) {
       gesture.drag?.(point, gesture.from);
       gesture.drop?.(point);
@@ -73,8 +65,9 @@ export class SelectTool {
     this.up(point);
   }
 
-  double(point) {
-    if (point.target.closest(".handle.vertex")) this.removeVertex(point.target.closest(".handle"));
+  double({ target }) {
+    const vertex = target.closest(".handle.vertex");
+    if (vertex) this.#removeVertex(vertex);
   }
 
   get isDragging() {
@@ -83,6 +76,7 @@ export class SelectTool {
 
   #end(gesture) {
     cancelAnimationFrame(gesture.frame);
+    this.ring = null;
     this.scene.sketch();
     this.pieces.endPreview();
     this.scene.drawPicture();
@@ -103,46 +97,42 @@ export class SelectTool {
       if (point.more && isSelected) this.edits.select("Items", [...pieces.selected].filter((one) => one !== row));
       else if (!point.more) this.edits.select("Items", [row]);
     };
-    if (!this.canEdit()) return { click };
-    const rows = [...pieces.selected].filter((one) => this.model.pieces.has(one));
-    return { click, rows, ...this.#carry(row, rows) };
+    return this.canEdit() ? { click, ...this.#carry(row, [...pieces.selected].filter((one) => this.model.pieces.has(one))) } : { click };
   }
 
   /** Drag some pieces; the one that is held snaps. */
   #carry(row, rows) {
     const held = this.model.pieces.get(row);
-    const poses = new Map(rows.map((one) => [one, this.model.pieces.get(one)]));
-    const lines = this.linesBut(rows);
-    const gesture = {};
-    gesture.drag = (point, from) => {
-      const shift = [point.at[0] - from.at[0], point.at[1] - from.at[1]];
-      const snapped = this.#snap(held, shift, lines, point.alt);
-      gesture.shift = snapped.shift;
-      this.pieces.preview(new Map([...poses].map(([one, pose]) => [one, this.#shifted(pose, snapped.shift)])));
-      this.scene.drawFalls();
-      this.showHandles();
-      const now = this.#shifted(held, snapped.shift);
-      this.scene.sketch(snapped.guides.map((points) => ({ name: "guide", points })), [{ at: [now.x, now.y], text: this.#xy(now) }]);
+    const poses = rows.map((one) => this.model.pieces.get(one));
+    const lines = this.#linesBut(rows);
+    let shift = null;
+    return {
+      drag: (point, { at: [x, y] }) => {
+        const snapped = this.#snap(held, [point.at[0] - x, point.at[1] - y], lines, point.alt);
+        shift = snapped.shift;
+        this.#preview(poses.map((one) => this.#shifted(one, shift)));
+        const now = this.#shifted(held, shift);
+        this.scene.sketch([], [{ at: [now.x, now.y], text: this.model.shownAt([now.x, now.y]) }], snapped.guides);
+      },
+      drop: () => {
+        const moved = poses.map((one) => ({ ...this.#shifted(one, shift), angle: undefined }));
+        this.edits.pose(moved, t("move"));
+        const now = this.#shifted(held, shift);
+        this.say(`${held.item}: ${this.model.shownAt([now.x, now.y])}`);
+      },
     };
-    gesture.drop = () => {
-      if (!gesture.shift) return;
-      const moved = [...poses].map(([one, pose]) => ({ row: one, ...this.#shifted(pose, gesture.shift), angle: undefined }));
-      this.edits.pose(moved, t("move"));
-      const now = this.#shifted(held, gesture.shift);
-      this.say(`${held.item}: ${this.#xy(now)}`);
-    };
-    return gesture;
+  }
+
+  #preview(poses) {
+    this.pieces.preview(poses);
+    this.scene.drawFalls();
+    this.showHandles();
   }
 
   /** Positions are whole centimetres; one that is not moved along an axis stays as it is. */
   #shifted(pose, [dx, dy]) {
     const moved = (value, by) => (Math.abs(by) < 0.005 ? value : roundTo(value + by, 0.01));
     return { ...pose, x: moved(pose.x, dx), y: moved(pose.y, dy) };
-  }
-
-  #xy({ x, y }) {
-    const unit = this.model.unit;
-    return t("X {x}, Y {y}", { x: shownLength(x, unit), y: shownLength(y, unit) });
   }
 
   #snap(piece, shift, lines, isOff) {
@@ -153,25 +143,21 @@ export class SelectTool {
   }
 
   /** Walls, and sides of the pieces that stay. */
-  linesBut(rows) {
-    const moving = new Set(rows);
-    const others = [...this.model.pieces.values()].filter((one) => !moving.has(one.row));
-    return [...this.walls(), ...others.flatMap((one) => sidesOf(corners(one)))];
-  }
-
-  walls() {
-    return (this.model.plan?.walls ?? []).map(([a, b]) => lineOf(a, b)).filter((one) => one.length > 0);
+  #linesBut(rows) {
+    const others = [...this.model.pieces.values()].filter((one) => !rows.includes(one.row));
+    return [...this.model.walls, ...others.flatMap((one) => sidesOf(corners(one)))];
   }
 
   /** Where a new piece of a size would snap to. */
   snapNew(piece, isOff) {
-    const { shift, guides } = this.#snap(piece, [0, 0], this.linesBut([]), isOff);
+    const { shift, guides } = this.#snap(piece, [0, 0], this.#linesBut([]), isOff);
     return { at: [roundTo(piece.x + shift[0], 0.01), roundTo(piece.y + shift[1], 0.01)], guides };
   }
 
   // ---- ground: frames, places, segments
 
-  #onGround(target, point) {
+  #onGround(point) {
+    const { target } = point;
     const place = Number(target.closest("[data-place]")?.dataset.place ?? 0);
     const segment = Number(target.closest("[data-segment]")?.dataset.segment ?? 0);
     const click = () => {
@@ -179,9 +165,9 @@ export class SelectTool {
       else if (segment) this.edits.select("Routes", [segment]);
       else if (!point.more) this.edits.select("Items", []);
     };
-    if (this.picture?.isUnlocked && this.canEdit() && !target.closest(".mark")) return { click, ...this.picture.carry() };
-    if (place && target.closest(".mark") && this.canEdit() && this.#isSelectedPlace(place)) return { click, ...this.#carryPlace(place) };
-    return { click, ...this.#frame(point) };
+    const isMark = this.canEdit() && target.closest(".mark");
+    if (this.canEdit() && !isMark && this.picture.isUnlocked) return { click, ...this.picture.carry() };
+    return { click, ...(isMark && this.#selectedPlace === place ? this.#carryPlace(place) : this.#frame(point)) };
   }
 
   #frame(point) {
@@ -190,36 +176,33 @@ export class SelectTool {
       return [...this.model.pieces.values()].filter((one) => one.x >= x0 && one.x <= x1 && one.y >= y0 && one.y <= y1).map((one) => one.row);
     };
     return {
-      drag: (to) => {
-        const [[a, b], [c, d]] = [point.at, to.at];
-        this.scene.sketch([{ name: "frame", points: [[a, b], [c, b], [c, d], [a, d]], isClosed: true }]);
-      },
-      drop: (to) => this.edits.select("Items", point.more ? [...new Set([...this.pieces.selected, ...inside(to)])] : inside(to)),
+      drag: (to) => this.scene.sketch([{ name: "frame", points: rectangle(point.at, to.at), isClosed: true }]),
+      drop: (to) => this.edits.select("Items", [...new Set([...(point.more ? this.pieces.selected : []), ...inside(to)])]),
     };
   }
 
-  #isSelectedPlace(row) {
-    const { selection } = this.store;
-    return selection.sheet === "Places" && selection.rows.includes(row);
+  /** The row of the one place that is selected, else 0. */
+  get #selectedPlace() {
+    const { sheet, row, rows } = this.store.selection;
+    return sheet === "Places" && rows.length === 1 ? row : 0;
   }
 
   #carryPlace(row) {
-    const place = this.model.places.get(row);
-    let at = [place.x, place.y];
+    const { x, y } = this.model.places.get(row);
+    let at = [x, y];
     return {
       drag: (point) => {
-        const found = this.snapDrawn(point, null, [row]);
-        at = found.point;
-        this.scene.sketch([{ name: "guide", points: [[place.x, place.y], at] }], [{ at, text: this.#xy({ x: at[0], y: at[1] }) }]);
+        at = this.snapDrawn(point, null, [row]).point;
+        this.scene.sketch([], [{ at, text: this.model.shownAt(at) }], [[[x, y], at]]);
       },
-      drop: () => this.edits.movePlace(row, at),
+      drop: () => this.edits.changePlace(row, { x: at[0], y: at[1] }, t("move")),
     };
   }
 
   /** A drawn point on corners, walls and right angles, unless snapping is off. */
   snapDrawn(point, before, without = []) {
     if (!this.snaps || point.alt) return { point: point.at, guides: [] };
-    const rings = [...this.model.places.values()].filter((one) => one.outline && !without.includes(one.row)).map((one) => one.outline);
+    const rings = this.model.outlined.filter((one) => !without.includes(one.row)).map((one) => one.outline);
     const targets = { points: rings.flat(), lines: rings.flatMap(sidesOf), before };
     return snapPoint(point.at, targets, SNAP_PX / this.viewport.scale);
   }
@@ -227,23 +210,19 @@ export class SelectTool {
   // ---- handles
 
   showHandles() {
-    this.scene.showHandles(this.canEdit() ? [...this.#turnHandle(), ...this.#vertexHandles(), ...(this.picture?.handles() ?? [])] : []);
+    this.scene.showHandles(this.canEdit() ? [...this.#turnHandle(), ...this.#vertexHandles(), ...this.picture.handles()] : []);
   }
 
   #turnHandle() {
     const rows = [...this.pieces.selected].filter((row) => this.model.pieces.has(row));
     if (rows.length !== 1) return [];
-    const pose = this.pieces.pose(rows[0]);
-    const [u, v] = turnPoint([pose.breadth / 2 + HANDLE_PX / this.viewport.scale, 0], pose.angle);
-    const [su, sv] = turnPoint([pose.breadth / 2, 0], pose.angle);
-    return [{ name: "turn", at: [pose.x + u, pose.y + v], stem: [pose.x + su, pose.y + sv], label: t("Turn: drag; Alt for single degrees"), data: { row: rows[0] } }];
+    const { x, y, angle, breadth } = this.pieces.pose(rows[0]);
+    const end = (by) => turnPoint([breadth / 2 + by, 0], angle, [x, y]);
+    return [{ name: "turn", at: end(HANDLE_PX / this.viewport.scale), stem: end(0), label: t("Turn: drag; Alt for single degrees"), data: { row: rows[0] } }];
   }
 
   #vertexHandles() {
-    const { selection } = this.store;
-    const place = selection.sheet === "Places" && selection.rows.length === 1 ? this.model.places.get(selection.row) : null;
-    const ring = this.ring ?? place?.outline;
-    if (!place || !ring) return [];
+    const ring = this.ring ?? this.model.places.get(this.#selectedPlace)?.outline ?? [];
     return ring.flatMap((at, i) => [
       { name: "midpoint", at: middle(at, ring[(i + 1) % ring.length]), label: t("Drag to add a corner"), data: { vertex: i + 1, add: 1 } },
       { name: "vertex", at, label: t("Drag to move the corner; double-click or Alt and click to take it out"), data: { vertex: i } },
@@ -253,22 +232,19 @@ export class SelectTool {
   #onHandle(handle, point) {
     if (handle.classList.contains("turn")) return this.#turning(Number(handle.dataset.row));
     if (handle.classList.contains("picture-turn")) return this.picture.turning();
-    if (handle.classList.contains("vertex") && point.alt) return { click: () => this.removeVertex(handle) };
+    if (handle.classList.contains("vertex") && point.alt) return { click: () => this.#removeVertex(handle) };
     return this.#bending(handle);
   }
 
   #turning(row) {
     const piece = this.model.pieces.get(row);
+    const centre = [piece.x, piece.y];
     let angle = piece.angle;
     return {
       drag: (point) => {
-        const raw = direction([piece.x, piece.y], point.at);
-        const step = point.alt || !this.snaps ? 1 : TURN_STEP;
-        angle = ((Math.round(raw / step) * step) % 360 + 360) % 360;
-        this.pieces.preview(new Map([[row, { ...piece, angle }]]));
-        this.scene.drawFalls();
-        this.showHandles();
-        this.scene.sketch([], [{ at: [piece.x, piece.y], text: `${angle}°` }]);
+        angle = wholeAngle(direction(centre, point.at), point.alt || !this.snaps ? 1 : TURN_STEP);
+        this.#preview([{ ...piece, angle }]);
+        this.scene.sketch([], [{ at: centre, text: `${angle}°` }]);
       },
       drop: () => {
         this.edits.pose([{ row, angle }], t("turn"));
@@ -278,32 +254,28 @@ export class SelectTool {
   }
 
   /** Move a corner of an outline, or make a new one of the middle of a side. */
-  #bending(handle) {
-    const row = this.store.selection.row;
-    const at = Number(handle.dataset.vertex);
+  #bending({ dataset: { vertex, add } }) {
+    const row = this.#selectedPlace;
+    const at = Number(vertex);
     const old = this.model.places.get(row).outline;
-    const ring = handle.dataset.add ? [...old.slice(0, at), middle(old[at - 1], old[at % old.length]), ...old.slice(at)] : [...old];
+    const ring = add ? old.toSpliced(at, 0, middle(old[at - 1], old[at % old.length])) : [...old];
     return {
       drag: (point) => {
         const found = this.snapDrawn(point, ring.at(at - 1), [row]);
         ring[at] = found.point;
         this.ring = ring;
-        this.scene.sketch([{ name: "drawn", points: ring, isClosed: true }, ...found.guides.map((points) => ({ name: "guide", points }))],
-          [{ at: found.point, text: shownLength(distance(ring.at(at - 1), found.point), this.model.unit) }]);
+        const text = this.model.shownLength(distance(ring.at(at - 1), found.point));
+        this.scene.sketch([{ name: "drawn", points: ring, isClosed: true }], [{ at: found.point, text }], found.guides);
         this.showHandles();
       },
-      drop: () => {
-        this.ring = null;
-        this.edits.outline(row, ring);
-      },
+      drop: () => this.edits.changePlace(row, { outline: ring }, t("outline")),
     };
   }
 
-  removeVertex(handle) {
-    const row = this.store.selection.row;
+  #removeVertex({ dataset: { vertex } }) {
+    const row = this.#selectedPlace;
     const ring = this.model.places.get(row)?.outline;
-    if (!ring) return;
-    if (ring.length <= 3) this.say(t("An outline needs three corners."));
-    else this.edits.outline(row, ring.filter((_, i) => i !== Number(handle.dataset.vertex)));
+    if (ring?.length <= 3) this.say(t("An outline needs three corners."));
+    else if (ring) this.edits.changePlace(row, { outline: ring.toSpliced(Number(vertex), 1) }, t("outline"));
   }
 }

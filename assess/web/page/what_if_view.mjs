@@ -2,20 +2,19 @@
 
 import { post } from "./api.mjs";
 import { CLASSES, badge, chanceText, describe, isPale } from "./classes.mjs";
-import { clear, el } from "./elements.mjs";
 import { ask } from "./messages.mjs";
-import { PlanEdits } from "./plan_edits.mjs";
-import { PlanModel, nameKey } from "./plan_model.mjs";
-import { isFilled } from "./sheet.mjs";
+import { nameKey } from "./plan_model.mjs";
 import { number, t, tn } from "./texts.mjs";
-import { Results } from "./what_if_results.mjs";
+import { html, nothing, render } from "./vendor/lit-html.mjs";
+import { results, summary } from "./what_if_results.mjs";
 
 const ASK_MS = 150;
 const AGAIN_MS = 400; // until all is simulated
 const MOST = 300;
+const ANCHORED_YES = 1; // among the choices of the column
 /** Steps of the slider: about the same share apart. */
 const SCALES = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.35, 1.5, 1.75, 2, 2.25, 2.5, 2.75, 3];
-const ONE = SCALES.indexOf(1);
+const AS_IT_IS = { scale: 1, scenario: null, first: 0 };
 const [LEAST, GREATEST] = [SCALES[0], SCALES.at(-1)];
 
 export function createView(root, store) {
@@ -23,100 +22,26 @@ export function createView(root, store) {
   return { show: () => view.show(), hide: () => view.hide() };
 }
 
+const button = (text, run) => html`<button type="button" @click=${run}>${text}</button>`;
+
 class WhatIfView {
   #timer = 0;
   #abort = null;
   #asked = 0;
   #isShown = false;
+  #isBusy = true;
   #answer = null;
+  #error = "";
   #stamp = null;
+  #showsAll = false;
   #ticked = new Set(); // rows
-  #scale = 1;
-  #scenario = null;
-  #first = 0;
+  #asks = { ...AS_IT_IS };
+  #words = []; // by which the list of pieces is filtered, and the class
+  #class = "";
 
   constructor(root, store) {
     Object.assign(this, { root, store });
-    this.edits = new PlanEdits(new PlanModel(store), store);
-    this.results = new Results(store);
-    this.#build();
-    this.#listen();
-  }
-
-  // ---- elements
-
-  #build() {
-    this.root.classList.add("what-if");
-    this.error = el("p", { class: "error-text", role: "alert", hidden: true });
-    this.status = el("div", { class: "unseen", role: "status", "aria-live": "polite" });
-    this.write = el("button", { type: "button", class: "primary editing-only", text: t("Write into the workbook…"), disabled: true, on: { click: () => this.#write() } });
-    const reset = el("button", { type: "button", text: t("Reset"), on: { click: () => this.#reset() } });
-    const banner = el("div", { class: "what-if-banner" }, el("p", null, el("b", { text: t("What if: nothing is saved.") }), " ", t("The workbook stays as it is until you write into it.")), el("div", { class: "buttons" }, reset, this.write));
-    const controls = el("section", { class: "what-if-controls", "aria-label": t("What to change") }, this.#scaleField(), this.#scenarioField(), this.#firstField(), this.#pieceList());
-    this.root.append(banner, el("div", { class: "what-if-main" }, controls, el("div", { class: "what-if-results" }, this.error, this.results.node)), this.status);
-  }
-
-  #scaleField() {
-    this.slider = el("input", { type: "range", min: "0", max: String(SCALES.length - 1), step: "1", value: String(ONE), "aria-label": t("Strength of the shaking") });
-    this.scaleInput = el("input", { type: "number", min: String(LEAST), max: String(GREATEST), step: "any", value: "1", "aria-label": t("Factor on the shaking") });
-    this.slider.addEventListener("input", () => this.#setScale(SCALES[Number(this.slider.value)]));
-    this.scaleInput.addEventListener("change", () => this.#setScale(this.scaleInput.valueAsNumber));
-    return el("fieldset", null, el("legend", { text: t("Strength of the shaking") }), el("div", { class: "slider" }, this.slider, el("span", { class: "times" }, "× ", this.scaleInput)),
-      el("p", { class: "hint", text: t("1 is the shaking of the workbook, 2 twice as strong.") }));
-  }
-
-  #setScale(value) {
-    this.#scale = Number.isFinite(value) ? Math.min(GREATEST, Math.max(LEAST, value)) : 1;
-    const nearest = SCALES.reduce((best, one, i) => (Math.abs(Math.log(one / this.#scale)) < Math.abs(Math.log(SCALES[best] / this.#scale)) ? i : best), 0);
-    this.slider.value = String(nearest);
-    this.slider.setAttribute("aria-valuetext", `× ${number(this.#scale)}`);
-    this.scaleInput.value = String(this.#scale);
-    this.#askSoon();
-  }
-
-  #scenarioField() {
-    this.scenario = el("select", null);
-    this.scenario.addEventListener("change", () => {
-      this.#scenario = this.scenario.value;
-      this.#askSoon();
-    });
-    return el("label", { class: "field" }, el("span", { class: "field-name", text: t("Scenario") }), this.scenario);
-  }
-
-  #firstField() {
-    this.firstSlider = el("input", { type: "range", min: "0", max: "0", step: "1", value: "0" });
-    this.firstText = el("output", { class: "times" });
-    this.firstSlider.addEventListener("input", () => {
-      this.#first = this.firstSlider.valueAsNumber;
-      this.#drawFirst();
-      this.#askSoon();
-    });
-    return el("label", { class: "field" }, el("span", { class: "field-name", text: t("Anchor the first entries of the work list") }), el("div", { class: "slider" }, this.firstSlider, this.firstText));
-  }
-
-  #drawFirst() {
-    const entries = this.#answer?.entries ?? 0;
-    this.firstSlider.max = String(entries);
-    this.firstSlider.disabled = entries === 0;
-    this.#first = Math.min(this.#first, entries);
-    this.firstSlider.value = String(this.#first);
-    const text = t("{n} of {all}", { n: this.#first, all: entries });
-    this.firstText.textContent = text;
-    this.firstSlider.setAttribute("aria-valuetext", text);
-  }
-
-  #pieceList() {
-    this.search = el("input", { type: "search", placeholder: t("Find a piece"), "aria-label": t("Find a piece"), on: { input: () => this.#drawPieces() } });
-    this.filter = el("select", { "aria-label": t("Class"), on: { change: () => this.#drawPieces() } }, [["", t("all classes")], ...CLASSES.map((key) => [key, `${describe(key).sign} ${describe(key).word}`])].map(([value, text]) => el("option", { value, text })));
-    this.count = el("p", { class: "hint" });
-    this.list = el("ul", { class: "rows ticks" });
-    const all = el("button", { type: "button", text: t("Tick all shown"), on: { click: () => this.#tickShown(true) } });
-    const none = el("button", { type: "button", text: t("Untick all"), on: { click: () => this.#tickShown(false) } });
-    return el("fieldset", { class: "tick-list" }, el("legend", { text: t("Anchor pieces") }), el("div", { class: "pair" }, this.search, this.filter), el("div", { class: "buttons" }, all, none), this.count, this.list);
-  }
-
-  #listen() {
-    const { store } = this;
+    root.classList.add("what-if");
     store.addEventListener("rows", ({ detail: { sheet, move } }) => sheet === "Items" && (this.#ticked = new Set([...this.#ticked].map(move).filter(Boolean))));
     store.addEventListener("book", () => {
       this.#answer = null;
@@ -125,14 +50,14 @@ class WhatIfView {
     });
     store.addEventListener("live", () => {
       if (!this.#isShown || !store.book) return;
-      this.#drawPieces();
+      this.#draw();
       if (this.#stamp !== store.stamp) this.#askSoon();
     });
   }
 
   show() {
     this.#isShown = true;
-    this.#drawPieces();
+    this.#draw();
     if (this.#stamp !== this.store.stamp) this.#askSoon(0);
   }
 
@@ -141,72 +66,113 @@ class WhatIfView {
     clearTimeout(this.#timer);
   }
 
+  // ---- drawing
+
+  #draw() {
+    const focused = document.activeElement?.dataset?.tick;
+    const answer = this.#answer;
+    const toggle = (on) => ((this.#showsAll = on), this.#draw());
+    render(html`<div class="what-if-banner"><p><b>${t("What if: nothing is saved.")}</b> ${t("The workbook stays as it is until you write into it.")}</p>
+        <div class="buttons">${button(t("Reset"), () => this.#reset())}<button type="button" class="primary editing-only"
+          ?disabled=${!answer?.anchored.length} @click=${() => this.#write()}>${t("Write into the workbook…")}</button></div></div>
+      <div class="what-if-main"><section class="what-if-controls" aria-label=${t("What to change")}>
+          ${this.#scaleField()}${this.#scenarioField()}${this.#firstField()}${this.#pieceList()}</section>
+        <div class="what-if-results"><p class="error-text" role="alert" ?hidden=${!this.#error}>${this.#error}</p>
+          <div class="results" aria-busy=${this.#isBusy}>${answer ? results(answer, this.store, this.#showsAll, toggle) : html`<p class="muted">${t("Computing…")}</p>`}</div></div></div>
+      <div class="unseen" role="status" aria-live="polite">${answer ? summary(answer) : ""}</div>`, this.root);
+    if (focused) this.root.querySelector(`[data-tick="${focused}"]`)?.focus();
+  }
+
+  #scaleField() {
+    const apart = SCALES.map((one) => Math.abs(Math.log(one / this.#asks.scale)));
+    const type = ({ target }) => {
+      const value = Number.isFinite(target.valueAsNumber) ? Math.min(GREATEST, Math.max(LEAST, target.valueAsNumber)) : 1;
+      target.value = String(value);
+      this.#change({ scale: value });
+    };
+    return html`<fieldset><legend>${t("Strength of the shaking")}</legend><div class="slider"><input type="range" min="0" max=${SCALES.length - 1} step="1"
+        .value=${String(apart.indexOf(Math.min(...apart)))} aria-label=${t("Strength of the shaking")} aria-valuetext="× ${number(this.#asks.scale)}"
+        @input=${({ target }) => this.#change({ scale: SCALES[target.valueAsNumber] })}>
+      <span class="times">× <input type="number" min=${LEAST} max=${GREATEST} step="any" .value=${String(this.#asks.scale)} aria-label=${t("Factor on the shaking")} @change=${type}></span></div>
+      <p class="hint">${t("1 is the shaking of the workbook, 2 twice as strong.")}</p></fieldset>`;
+  }
+
+  #scenarioField() {
+    const { scenarios = [], scenario } = this.#answer ?? {};
+    const chosen = this.#asks.scenario ?? scenario;
+    return html`<label class="field"><span class="field-name">${t("Scenario")}</span><select @change=${({ target }) => this.#change({ scenario: target.value })}>
+      ${scenarios.map(([value, text]) => html`<option value=${value} .selected=${value === chosen}>${text}</option>`)}</select></label>`;
+  }
+
+  #firstField() {
+    const { entries = 0 } = this.#answer ?? {};
+    const text = t("{n} of {all}", { n: this.#asks.first, all: entries });
+    return html`<label class="field"><span class="field-name">${t("Anchor the first entries of the work list")}</span><div class="slider">
+      <input type="range" min="0" max=${entries} step="1" ?disabled=${!entries} .value=${String(this.#asks.first)} aria-valuetext=${text}
+        @input=${({ target }) => this.#change({ first: target.valueAsNumber })}><output class="times">${text}</output></div></label>`;
+  }
+
+  #pieceList() {
+    const all = this.#shownPieces();
+    const find = ({ target }) => ((this.#words = nameKey(target.value).split(" ").filter(Boolean)), this.#draw());
+    const filter = ({ target }) => ((this.#class = target.value), this.#draw());
+    const said = all.length ? tn("{n:,} piece ticked; the likeliest to fall first.", "{n:,} pieces ticked; the likeliest to fall first.", this.#ticked.size) : t("No piece has such a class or name.");
+    return html`<fieldset class="tick-list"><legend>${t("Anchor pieces")}</legend>
+      <div class="pair"><input type="search" placeholder=${t("Find a piece")} aria-label=${t("Find a piece")} @input=${find}>
+        <select aria-label=${t("Class")} @change=${filter}><option value="">${t("all classes")}</option>
+          ${CLASSES.map((key) => html`<option value=${key}>${describe(key).sign} ${describe(key).word}</option>`)}</select></div>
+      <div class="buttons">${button(t("Tick all shown"), () => this.#tick(all.map((one) => one.row), true))}${button(t("Untick all"), () => this.#tick([...this.#ticked], false))}</div>
+      <p class="hint">${said}</p><ul class="rows ticks">${all.slice(0, MOST).map((one) => this.#row(one))}
+        ${all.length > MOST ? html`<li class="muted">${tn("{n:,} more", "{n:,} more", all.length - MOST)}</li>` : nothing}</ul></fieldset>`;
+  }
+
+  #row({ row, name, about, live }) {
+    const isTicked = this.#ticked.has(row);
+    const isListed = !isTicked && Boolean(this.#answer?.anchored.includes(row));
+    return html`<li><label class="tick" title=${isListed ? t("Anchored by the list of what to fix") : about}><input type="checkbox" data-tick=${row}
+      .checked=${isTicked || isListed} ?disabled=${isListed} @change=${({ target }) => this.#tick([row], target.checked)}>${badge(live.class, { isPale: isPale(live) })}
+      <b>${name}</b><span class="about">${about}</span><span class="end">${chanceText(live)}</span></label></li>`;
+  }
+
   // ---- the pieces that could be anchored
 
-  /** Those with a class, the likeliest to fall first. */
-  #candidates() {
-    const items = this.store.sheet("Items");
-    if (!items?.found) return [];
-    const text = (row, field) => {
-      const column = items.column(field);
-      return column ? String(items.value(row, column.at) ?? "") : "";
-    };
-    return [...this.store.live].filter(([, live]) => live.class).map(([row, live]) => ({
-      row, name: text(row, "item"), about: [text(row, "description") || text(row, "type"), text(row, "room")].filter(Boolean).join(", "), key: live.class, chance: live.chance ?? 0, live,
-    })).filter((one) => one.name).sort((a, b) => CLASSES.indexOf(a.key) - CLASSES.indexOf(b.key) || b.chance - a.chance || a.row - b.row);
+  #text(row, field) {
+    const column = this.store.sheet("Items")?.column(field);
+    return column ? String(this.store.sheet("Items").value(row, column.at) ?? "") : "";
   }
 
+  /** Those with a class and what is looked for, the likeliest to fall first. */
   #shownPieces() {
-    const words = nameKey(this.search.value).split(" ").filter(Boolean);
-    return this.#candidates().filter((one) => (!this.filter.value || one.key === this.filter.value) && words.every((word) => nameKey(`${one.name} ${one.about}`).includes(word)));
+    const about = (row) => [this.#text(row, "description") || this.#text(row, "type"), this.#text(row, "room")].filter(Boolean).join(", ");
+    return [...this.store.live].filter(([, live]) => live.class && (!this.#class || live.class === this.#class))
+      .map(([row, live]) => ({ row, name: this.#text(row, "item"), about: about(row), live }))
+      .filter((one) => one.name && this.#words.every((word) => nameKey(`${one.name} ${one.about}`).includes(word)))
+      .sort((a, b) => CLASSES.indexOf(a.live.class) - CLASSES.indexOf(b.live.class) || (b.live.chance ?? 0) - (a.live.chance ?? 0) || a.row - b.row);
   }
 
-  #drawPieces() {
-    const all = this.#shownPieces();
-    const byList = new Set(this.#answer?.anchored ?? []);
-    const focused = document.activeElement?.dataset?.tick;
-    clear(this.list).append(...all.slice(0, MOST).map((one) => this.#row(one, byList)));
-    if (all.length > MOST) this.list.append(el("li", { class: "muted", text: tn("{n:,} more", "{n:,} more", all.length - MOST) }));
-    if (focused) this.list.querySelector(`[data-tick="${focused}"]`)?.focus();
-    const n = this.#ticked.size;
-    this.count.textContent = all.length ? tn("{n:,} piece ticked; the likeliest to fall first.", "{n:,} pieces ticked; the likeliest to fall first.", n) : t("No piece has such a class or name.");
-  }
-
-  #row(one, byList) {
-    const isTicked = this.#ticked.has(one.row);
-    const isListed = byList.has(one.row) && !isTicked;
-    const box = el("input", { type: "checkbox", checked: isTicked || isListed, disabled: isListed, dataset: { tick: one.row } });
-    box.addEventListener("change", () => this.#tick(one.row, box.checked));
-    return el("li", null, el("label", { class: "tick", title: isListed ? t("Anchored by the list of what to fix") : one.about }, box, badge(one.key, { isPale: isPale(one.live) }), el("b", { text: one.name }), el("span", { class: "about", text: one.about }), el("span", { class: "end", text: chanceText(one.live) })));
-  }
-
-  #tick(row, on) {
-    if (on) this.#ticked.add(row);
-    else this.#ticked.delete(row);
-    this.#drawPieces();
-    this.#askSoon();
-  }
-
-  #tickShown(on) {
-    if (on) for (const one of this.#shownPieces()) this.#ticked.add(one.row);
-    else this.#ticked.clear();
-    this.#drawPieces();
+  #tick(rows, on) {
+    for (const row of rows) this.#ticked[on ? "add" : "delete"](row);
     this.#askSoon();
   }
 
   // ---- asking
 
-  #askSoon(delay = ASK_MS) {
-    clearTimeout(this.#timer);
-    this.results.node.setAttribute("aria-busy", "true");
-    this.#timer = setTimeout(() => this.#ask(), delay);
+  /** Change what is asked for: scale, scenario, first. */
+  #change(wish) {
+    Object.assign(this.#asks, wish);
+    this.#askSoon();
   }
 
-  #names() {
-    const items = this.store.sheet("Items");
-    const column = items?.column("item");
-    if (!column) return [];
-    return [...this.#ticked].filter((row) => this.store.live.get(row)?.class).map((row) => items.value(row, column.at)).filter(isFilled).map(String);
+  #reset() {
+    this.#ticked.clear();
+    this.#change(AS_IT_IS);
+  }
+
+  #askSoon(delay = ASK_MS) {
+    clearTimeout(this.#timer);
+    this.#isBusy = true;
+    this.#draw();
+    this.#timer = setTimeout(() => this.#ask(), delay);
   }
 
   async #ask() {
@@ -214,67 +180,34 @@ class WhatIfView {
     const asked = ++this.#asked;
     this.#abort?.abort();
     this.#abort = new AbortController();
-    const request = { scale: this.#scale, anchor: this.#names(), first: this.#first, ...(this.#scenario === null ? {} : { scenario: this.#scenario }) };
+    const anchor = [...this.#ticked].filter((row) => this.store.live.get(row)?.class).map((row) => this.#text(row, "item")).filter(Boolean);
     try {
       const { stamp } = this.store;
-      const answer = await post("/api/what-if", request, this.#abort.signal);
+      const answer = await post("/api/what-if", { ...this.#asks, anchor }, this.#abort.signal);
       if (asked !== this.#asked) return;
       this.#stamp = stamp;
-      this.#take(answer);
-      const isOpen = ["running", "waiting"].includes(answer.simulation.state);
-      if (isOpen) this.#timer = setTimeout(() => this.#ask(), AGAIN_MS);
-      this.results.node.setAttribute("aria-busy", String(isOpen));
+      this.#answer = answer;
+      this.#error = answer.error;
+      this.#asks.first = Math.min(this.#asks.first, answer.entries);
+      this.#isBusy = ["running", "waiting"].includes(answer.simulation.state);
+      if (this.#isBusy) this.#timer = setTimeout(() => this.#ask(), AGAIN_MS);
     } catch (error) {
       if (error.name === "AbortError" || asked !== this.#asked) return;
-      this.#fail(error.message);
+      this.#error = error.message;
+      this.#isBusy = false;
     }
-  }
-
-  #fail(message) {
-    this.error.hidden = false;
-    this.error.textContent = message;
-    this.results.node.setAttribute("aria-busy", "false");
-  }
-
-  #take(answer) {
-    this.#answer = answer;
-    this.error.hidden = !answer.error;
-    this.error.textContent = answer.error;
-    this.#drawScenarios(answer);
-    this.#drawFirst();
-    this.#drawPieces();
-    this.results.draw(answer);
-    this.write.disabled = answer.anchored.length === 0;
-    this.status.textContent = this.results.summary(answer);
-  }
-
-  #drawScenarios({ scenarios, scenario }) {
-    const key = JSON.stringify(scenarios);
-    if (key !== this.scenariosShown) clear(this.scenario).append(...scenarios.map(([value, text]) => el("option", { value, text })));
-    this.scenariosShown = key;
-    this.scenario.value = this.#scenario ?? scenario;
-  }
-
-  // ---- what to do with it
-
-  #reset() {
-    this.#ticked.clear();
-    this.#first = 0;
-    this.#scenario = null;
-    this.#setScale(1);
-    this.#drawFirst();
-    this.#drawPieces();
+    this.#draw();
   }
 
   /** Write Anchored = yes for the pieces that are anchored here: one step of undo. Shaking and scenario are not written. */
   async #write() {
-    const rows = this.#answer?.anchored ?? [];
-    if (!rows.length) return;
+    const rows = this.#answer.anchored;
     const question = tn("Write Anchored: yes into the workbook for {n:,} row? Strength and scenario are not written. Undo takes it back.", "Write Anchored: yes into the workbook for {n:,} rows? Strength and scenario are not written. Undo takes it back.", rows.length);
     if (!(await ask(question, [[t("Write"), true], [t("Cancel"), false]]))) return;
-    if (!(await this.edits.anchor(rows, t("anchor")))) return;
+    const column = this.store.sheet("Items").column("anchored");
+    if (!column || !(await this.store.edit(rows.map((row) => ["Items", row, column.at, column.choices[ANCHORED_YES]]), t("anchor")))) return;
     this.#ticked.clear();
-    this.#first = 0;
+    this.#asks.first = 0;
     this.#askSoon(0);
     this.store.offerUndo(tn("{n:,} row written.", "{n:,} rows written.", rows.length));
   }
