@@ -90,17 +90,17 @@ def command(
     if missing := [name for name in PACKAGES if find_spec(name) is None]:
         raise AssessError(f"the page needs {', '.join(missing)}, which is not installed. {say_install('web')}")
     from assess.delivery.folders import private_folder
-    from assess.web.journal import take_left
+    from assess.web.journal import set_aside
     from assess.web.limits import HOSTED, OWN, PREFIX
     from assess.web.server import Place, Server, bind
 
     limits = _change_limits(HOSTED if user_header else OWN, limit or ())
     place = Place(host, port, tuple(allowed_host or ()), user_header or "", code, limits, stays=sessions is not None)
     _check_place(place, path)
-    left = None if place.is_hosted else take_left(path)  # before it is tidied up
+    set_aside(path)  # before it is tidied up
     with bind(place) as listening, _hold_folder(sessions) if sessions else private_folder(PREFIX) as folder:
         server = Server(listening, place, folder, Path.cwd())
-        for remark in server.open(path, left) if path is not None or left is not None else ():
+        for remark in server.open(path) if not place.is_hosted else ():
             say(f"warning  {remark}", err=True)
         ending = server.run(interrupts.NUMBERS, lambda: _welcome(server, place, no_browser))
     for name in ending.lost:

@@ -18,7 +18,7 @@ from assess.web.cell_edits import Contents, EditsRefused, History, Step, change_
 from assess.web.columns import PageSheet, find_sheets, find_units, show
 from assess.web.disk_file import ChangedOutsideError, DiskFile, find_hash
 from assess.web.file_names import FILES, add_file, list_missing
-from assess.web.journal import Journal
+from assess.web.journal import Journal, list_saved
 from assess.web.request_errors import CONFLICT, UNUSABLE, RequestError
 from assess.web.simulating import Simulator
 from assess.web.snapshot import Snapshot
@@ -78,18 +78,22 @@ class Book:
         acts: dict[str, Callable[..., Any]] = {
             "edit": book.edit, "rows": book.change_rows, "undo": book.undo, "redo": book.redo,
         }  # fmt: skip
-        saved = next((given for what, *given in reversed(steps) if what == "saved"), None)
+        marks, now = list_saved(head, steps), None
+        if file is not None:
+            with suppress(OSError):
+                now = file.path.read_bytes()
+        found = now and find_hash(now)
+        saved_version, digest = next((one for one in reversed(marks) if one[1] == found), marks[0])
         for what, *given in steps:
             if what in acts:
                 acts[what](book.version, *given)
             elif what == "file":
                 book._note_file()
-            if saved is not None and saved[0] == book.version:
+            if book.version == saved_version:
                 book._saved = book._now.workbook
-        if file is not None and saved is not None:
-            book._saved_version, file.digest = saved
-            with suppress(OSError):
-                book._data = file.path.read_bytes()
+        if file is not None:
+            book._saved_version, file.digest = saved_version, digest
+            book._data = now if found == digest else None
         book._compare()
         book._journal = journal
         return book
@@ -100,13 +104,17 @@ class Book:
             self._journal = journal
             path, digest = (str(self._file.path.absolute()), self._file.digest) if self._file else ("", "")
             journal.begin(
-                self._data, self.folder, name=self.name, path=path, digest=digest, opening=self.opening,
+                self._opened.workbook.data, self.folder, name=self.name, path=path, digest=digest, opening=self.opening,
                 version=self.version,
             )  # fmt: skip
 
     def _note(self, *step: Any) -> None:
         if self._journal is not None:
             self._journal.note(*step)
+
+    def _note_save(self, what: str, version: int, digest: str) -> None:
+        with self._lock, suppress(OSError):  # without it, a kill has the file be called changed by another program
+            self._note(what, version, digest)
 
     def _take_in(self, data: bytes) -> None:
         workbook = open_workbook(data, self.name)
@@ -118,7 +126,9 @@ class Book:
         self._history = History()
         self._saved_version = self._read_version = self.version
         self._now = self._opened = self._snap(workbook)
-        self._saved, self._data, self._is_saved = workbook, data, True
+        self._saved, self._is_saved = workbook, True
+        self._data: bytes | None = data  # of the file, None where it is not known
+        self._answered = "", dict[str, Any]()  # the last request that has changed it, and the answer
         self._opened_live: LiveRows | None = None
         self._written: tuple[Snapshot, bytes] = (self._now, data)
         self._missing: list[dict[str, Any]] | None = None
@@ -179,12 +189,12 @@ class Book:
 
     # ------------------------------------------------------------ edits
 
-    def edit(self, version: int, edits: object, label: str) -> dict[str, Any]:
+    def edit(self, version: int, edits: object, label: str, request: str = "") -> dict[str, Any]:
         """Change cells, all of them or none; return every cell that was edited, as it is now.
 
         `version` is that which the edits rest on, `edits` a list of ``[sheet, row, at, value]``, `label` what the step
-        is, in a word. Raises VersionError if the book has another version; EditsRefused if any cell cannot be changed
-        so; InputError if `edits` is no list of edits.
+        is, in a word, `request` what tells the request from others. Raises VersionError if the book has another
+        version; EditsRefused if any cell cannot be changed so; InputError if `edits` is no list of edits.
         """
         with self._lock:
             self._check_version(version)
@@ -195,13 +205,11 @@ class Book:
             changed = {place: value for place, value in new.items() if not is_same(old[place], value)}
             step = Step(label, {place: old[place] for place in changed}, changed)
             if changed:
-                self._apply(step)
-                self._history.add(step)
-                self._note("edit", edits, label)
-            return self._describe_change(new)
+                self._apply(step, "edit", edits, label, request)
+            return self._answer(request, self._describe_change(new))
 
     def change_rows(
-        self, version: int, sheet: str, do: object, at: object, count: object, to: object = None
+        self, version: int, sheet: str, do: object, at: object, count: object, to: object = None, request: str = ""
     ) -> dict[str, Any]:
         """Insert, delete or move rows of a sheet, as `assess.web.cell_edits.change_rows`; one step of the history.
 
@@ -220,44 +228,54 @@ class Book:
             raise RequestError(why, UNUSABLE, one.fix) from None
         with self._lock:
             self._check_version(version)
-            self._history.add(step)
-            self._note("rows", sheet, do, at, count, to)
-            return self._go(step)
+            return self._go(step, "rows", sheet, do, at, count, to, request)
 
-    def undo(self, version: int) -> dict[str, Any]:
+    def undo(self, version: int, request: str = "") -> dict[str, Any]:
         """Take the last step back; raises VersionError if the book has another version."""
         with self._lock:
             self._check_version(version)
-            return self._go(self._history.back(), "undo")
+            return self._go(self._history.back(), "undo", request)
 
-    def redo(self, version: int) -> dict[str, Any]:
+    def redo(self, version: int, request: str = "") -> dict[str, Any]:
         """Do the last step again that was taken back; raises VersionError if the book has another version."""
         with self._lock:
             self._check_version(version)
-            return self._go(self._history.forward(), "redo")
+            return self._go(self._history.forward(), "redo", request)
 
-    def _go(self, step: Step | None, what: str = "") -> dict[str, Any]:
+    def _go(self, step: Step | None, *noted: Any) -> dict[str, Any]:
         if step is None:
             return self._describe_change({})
-        self._apply(step)
-        if what:
-            self._note(what)
+        self._apply(step, *noted)
         inserted = [row for one in step.shifts if one.back(one.at) is None for row in range(one.at, one.at + one.count)]
         cells = self._now.workbook.sheets[step.label].cells if inserted else {}
         found = {(step.label, row, at): None for row in inserted for at in cells.get(row, ())}
         rows = [[step.label, one.at, one.count, getattr(one, "to", None)] for one in step.shifts]
-        return {**self._describe_change({**step.after, **found}), "rows": rows}
+        return self._answer(noted[-1], {**self._describe_change({**step.after, **found}), "rows": rows})
+
+    def _answer(self, request: str, answer: dict[str, Any]) -> dict[str, Any]:
+        self._answered = request, answer
+        return answer
+
+    def find_answer(self, request: str) -> dict[str, Any] | None:
+        """Return the answer to a request that comes again; None of any but the very last that has changed it."""
+        with self._lock:
+            known, answer = self._answered
+            is_last = bool(request) and known == request and answer["state"]["version"] == self.version
+            return {**answer, "state": self.state()} if is_last else None
 
     def _check_version(self, version: int) -> None:
         if version != self.version:
             raise VersionError(self.state())
 
-    def _apply(self, step: Step) -> None:
+    def _apply(self, step: Step, *noted: Any) -> None:
         by_sheet: dict[str, dict[tuple[int, int], Any]] = {}
         for (sheet, row, at), value in step.after.items():
             by_sheet.setdefault(sheet, {})[row, at] = value
+        workbook = step.books[1] if step.books else self._now.workbook.put(by_sheet)
+        self._note(*noted)
+        self._history.take(step, noted[0])
         self.version += 1
-        self._now = self._snap(step.books[1] if step.books else self._now.workbook.put(by_sheet))
+        self._now = self._snap(workbook)
         self._compare()
         columns = ((sheet, self.sheets[sheet].find(row, at)) for sheet, row, at in step.after)
         if step.books or any(one and one.column and (sheet, one.column.name) in FILES for sheet, one in columns):
@@ -288,7 +306,7 @@ class Book:
         with self._saving:
             with self._lock:
                 now, opened, live, written = self._now, self._opened, self._opened_live, self._written
-                if self._is_saved:
+                if self._is_saved and self._data is not None:
                     return now, self._data
             if written[0] is now:  # a file that was added changes results as well
                 return now, written[1]
@@ -317,14 +335,14 @@ class Book:
                     is_saved = self._is_saved
                 now, data = self._write()
                 if not is_saved:
-                    self._file.replace(data)
+                    self._file.replace(data, lambda digest: self._note_save("saving", now.version, digest))
                 with self._lock:
                     self._save_error = self._hindrance = ""
                     if not is_saved:
                         self._changed_outside, self._saved_version = False, now.version
                         self._saved, self._data = now.workbook, data
                         self._compare()  # more may have been edited meanwhile
-                        self._note("saved", now.version, self._file.digest)
+                        self._note_save("saved", now.version, self._file.digest)
         except ChangedOutsideError:
             with self._lock:
                 self._changed_outside = True

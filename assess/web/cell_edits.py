@@ -61,8 +61,11 @@ class History:
     steps: list[Step] = field(default_factory=list)
     at: int = 0
 
-    def add(self, step: Step) -> None:
-        """Take in a step that has been done; those that were undone are forgotten."""
+    def take(self, step: Step, what: str) -> None:
+        """Take in a step that has been done: one of "undo" or "redo", else a new one."""
+        if what in ("undo", "redo"):
+            self.at += 1 if what == "redo" else -1
+            return
         self.steps[self.at :] = [step]
         cells = sum(one.size for one in self.steps)
         while len(self.steps) > MOST_STEPS or (cells > MOST_CELLS and len(self.steps) > 1):
@@ -70,18 +73,12 @@ class History:
         self.at = len(self.steps)
 
     def back(self) -> Step | None:
-        """Return the step that takes the last one back, None where there is none; that counts as undone."""
-        if self.at == 0:
-            return None
-        self.at -= 1
-        return self.steps[self.at].turn()
+        """Return the step that takes the last one back, None where there is none."""
+        return self.steps[self.at - 1].turn() if self.at else None
 
     def forward(self) -> Step | None:
-        """Return the next step, None where there is none; it counts as done."""
-        if self.at == len(self.steps):
-            return None
-        self.at += 1
-        return self.steps[self.at - 1]
+        """Return the next step, None where there is none."""
+        return self.steps[self.at] if self.at < len(self.steps) else None
 
 
 MOST_EDITS = 500_000

@@ -5,6 +5,7 @@ import hashlib
 import os
 import shutil
 import stat
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -65,8 +66,8 @@ class DiskFile:
             self.signature = found
         return not is_same
 
-    def replace(self, data: bytes) -> None:
-        """Replace it by other bytes, whole or not at all; its access rights stay.
+    def replace(self, data: bytes, begin: Callable[[str], None] = lambda _digest: None) -> None:
+        """Replace it by other bytes, whole or not at all; its access rights stay. `begin` takes their digest before.
 
         Raises ChangedOutsideError if it holds other bytes than those last read or saved; OutputError if it cannot be
         written, with the reason.
@@ -90,11 +91,13 @@ class DiskFile:
                 _copy_rights(target, staged)
                 if self.is_changed():  # while it was written
                     raise ChangedOutsideError(self.path)
+                digest = find_hash(data)
+                begin(digest)
                 staged.replace(target)
             flush_folder(target.parent)
         except OSError as error:
             raise OutputError(self._explain(error)) from None
-        self.digest, self.signature = find_hash(data), self._look()
+        self.digest, self.signature = digest, self._look()
 
     def find_hindrance(self) -> str:
         """Return why it cannot be replaced, as far as its rights and those of its folder tell; blank where it can."""

@@ -127,16 +127,18 @@ def _edit(asked: Asked) -> Answer:
     if not isinstance(edits, list):
         raise RequestError(fill("The request cannot be read."), UNUSABLE)
     label = str(asked.body.get("label") or "")
-    return _change(asked, lambda book, version: book.edit(version, edits, label))
+    return _change(asked, lambda book, version, request: book.edit(version, edits, label, request))
 
 
 def _change_rows(asked: Asked) -> Answer:
-    sheet, *rest = (asked.body.get(name) for name in ("sheet", "do", "at", "count", "to"))
-    return _change(asked, lambda book, version: book.change_rows(version, str(sheet), *rest))
+    sheet, do, at, count, to = (asked.body.get(name) for name in ("sheet", "do", "at", "count", "to"))
+    return _change(
+        asked, lambda book, version, request: book.change_rows(version, str(sheet), do, at, count, to, request)
+    )
 
 
-def _change(asked: Asked, change: "Callable[[Book, int], dict[str, Any]]") -> Answer:
-    """Change the workbook; VersionError where the page has another opening of it, or another book."""
+def _change(asked: Asked, change: "Callable[[Book, int, str], dict[str, Any]]") -> Answer:
+    """Change the workbook, once for an `id`; VersionError where the page has another opening of it, or another book."""
     from assess.web.book import VersionError
 
     book, version = asked.book, asked.body.get("version")
@@ -144,7 +146,8 @@ def _change(asked: Asked, change: "Callable[[Book, int], dict[str, Any]]") -> An
         raise VersionError(book.state())
     if not isinstance(version, int) or isinstance(version, bool):
         raise RequestError(fill("The request does not name the version of the workbook."), UNUSABLE)
-    answer = change(book, version)
+    request = str(asked.body.get("id") or "")
+    answer = book.find_answer(request) or change(book, version, request)
     if answer.get("rows"):  # at once: edits that the page keeps until they are saved name other rows than the file has
         with suppress(AssessError):
             book.save()
@@ -320,8 +323,8 @@ TABLE: tuple[tuple[str, Mapping[str, Handler]], ...] = (
         "/api/what-if": partial(_evaluate, "what-if"),
         "/api/save": _after(lambda asked: asked.book.save(), lambda asked: asked.book.state()),
         "/api/reload": _after(lambda asked: asked.book.reload(), lambda asked: asked.book.describe()),
-        "/api/undo": lambda asked: _change(asked, lambda book, version: book.undo(version)),
-        "/api/redo": lambda asked: _change(asked, lambda book, version: book.redo(version)),
+        "/api/undo": lambda asked: _change(asked, lambda book, version, request: book.undo(version, request)),
+        "/api/redo": lambda asked: _change(asked, lambda book, version, request: book.redo(version, request)),
         "/api/job": _after(lambda asked: asked.session.begin_run(asked.body), _describe_job),
         "/api/job/files": _after(_make_files, _describe_job),
         "/api/job/remove": _after(lambda asked: asked.session.runs.remove(asked.run.id), _describe_job),

@@ -31,7 +31,7 @@ from assess.web.request_errors import (
     describe_fault,
 )
 from assess.web.texts import COOKIE, choose_language
-from assess.web.users import User
+from assess.web.users import BODY, User
 from assess.web.workers import Link, WorkerGoneError, ask_own
 
 LOG = logging.getLogger("assess.web")
@@ -77,7 +77,7 @@ class Front:
             return answer_asset(found, request.headers, request.query_params.get("v", ""))
         if path not in POLLED or request.method not in READING:
             user.seen = time.monotonic()
-        elif not user.is_awake and path in user.last:
+        elif (user.is_ending or not user.is_awake) and path in user.last:
             return _respond(user.last[path])
         async with _turn(user, path):
             call = await self._receive(request, user)
@@ -117,7 +117,11 @@ class Front:
             link = user.link
             if link is None or link.is_gone:
                 await self._make_place(user)
-                link = user.link = await user.run(user.start, user.folder)
+                user.is_coming = True
+                try:
+                    link = user.link = await user.run(user.start, user.folder)
+                finally:
+                    user.is_coming = False
                 with suppress(WorkerGoneError):
                     await user.run(ask_own, link, "hello")
         return link
@@ -125,16 +129,14 @@ class Front:
     async def _make_place(self, user: User) -> None:
         """End the process that has been idle for longest where there are as many as may be; wait where all work."""
         late = time.monotonic() + self._limits.wait
-        while True:
-            awake = [one for one in self._users() if one.is_awake and one is not user]
-            if len(awake) < self._limits.workers:
-                return
+        while len(awake := [one for one in self._users() if one.is_awake and one is not user]) >= self._limits.workers:
             for idle in sorted((one for one in awake if not one.busy), key=lambda one: one.seen):
                 if await idle.run(idle.sleep):
-                    return
-            if time.monotonic() > late:
-                raise RequestError(fill("Too many users are at work. Try again in a moment."), UNAVAILABLE)
-            await asyncio.sleep(ASKED_EVERY)
+                    break  # another session may have taken the place by now
+            else:
+                if time.monotonic() > late:
+                    raise RequestError(fill("Too many users are at work. Try again in a moment."), UNAVAILABLE)
+                await asyncio.sleep(ASKED_EVERY)
 
     # ------------------------------------------------------------ bodies
 
@@ -201,7 +203,7 @@ class _Body:
     async def _take(self, part: bytes) -> None:
         self.held += part
         if self._size > SMALL and self.path is None:
-            self.path = self._user.folder / f"body-{secrets.token_hex(8)}"
+            self.path = self._user.folder / f"{BODY}{secrets.token_hex(8)}"
         if len(self.held) > PART and self.path is not None:
             await self._write(self.path)
 

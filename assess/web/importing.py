@@ -1,9 +1,12 @@
 """A building model, a plan, a scan or a COBie file that becomes a new workbook, read in a thread of its own.
 
-What is read goes to a folder of its own, which is removed once it has been read, however that ended.
+What is read goes to a folder of its own, where what was found takes its place until it is a workbook; a process that is
+started again goes on from there.
 """
 
+import json
 import logging
+import pickle
 import secrets
 import shutil
 import threading
@@ -30,8 +33,8 @@ if TYPE_CHECKING:
 FOLDER = "import-"
 READING = fill("Other building models are being read. Try again in a minute.")
 """Why there is no place for another."""
-SOURCE = "model"
-"""In its folder: what was sent, whatever it is called."""
+SOURCE, ORDER, FOUND = "model", "order.json", "found"
+"""In its folder: what was sent, whatever it is called; what the process is to know of it; what it has found."""
 LEFT_AFTER = 90.0
 """Time after which a reading ends whose page no longer asks how far it is [s]; browsers slow down hidden pages."""
 PATIENCE = 2.0
@@ -70,23 +73,27 @@ class _Asked(threading.Event):
 
 
 class Import:
-    """A file, `SOURCE` in a folder that is removed once it has been read; RequestError without a free slot."""
+    """A file, `SOURCE` in a folder that is removed once it is a workbook; RequestError without a free slot."""
 
-    def __init__(self, folder: Path, name: str, routes: Routes, slots: Slots) -> None:
-        self.id, self.name, self.state, self.book = secrets.token_hex(8), name, "running", ""
-        self._folder, self._routes = folder, routes
+    def __init__(self, folder: Path, name: str, routes: Routes, slots: Slots, number: str = "") -> None:
+        self.id, self.name = number or secrets.token_hex(8), name  # the number is that of a process before
+        self.state, self.book = "running", ""
+        self._folder, self._routes, self._is_kept = folder, routes, False
         self._asked, self._lock = _Asked(), threading.RLock()
         self._started, self._latest = time.monotonic(), Report("", 0.0, "", None)
         self._error: Exception | None = None
         self._found: ImportedBuilding | None = None
         self._taken: dict[str, Any] | None = None
         try:
-            self._slot = slots.take()
+            self._slot = None if (folder / FOUND).is_file() else slots.take()
         except RequestError:
             shutil.rmtree(folder, ignore_errors=True)
             raise
+        (folder / ORDER).write_text(json.dumps([name, routes, self.id]), encoding="utf-8")
         self._thread = threading.Thread(target=copy_context().run, args=(self._run,), name="assess-import", daemon=True)
         self._thread.start()
+        if self._slot is None:
+            self._thread.join()
 
     def _run(self) -> None:
         from assess.bim.import_workbook import group_skipped
@@ -98,15 +105,23 @@ class Import:
         state, found, error = "done", None, None
         try:
             progress = Progress(listen, self._asked)
-            found = read_source(self._folder / SOURCE, self.name, progress, routes=self._routes)
+            if (kept := self._folder / FOUND).is_file():
+                found = pickle.loads(kept.read_bytes())  # noqa: S301 - written below, in a folder of this user alone
+            else:
+                found = read_source(self._folder / SOURCE, self.name, progress, routes=self._routes)
+                (part := kept.with_suffix(".part")).write_bytes(pickle.dumps(found))
+                part.replace(kept)
+                (self._folder / SOURCE).unlink()
         except CancelledError:
             state = "cancelled"
         except Exception as fault:
             state, error = "failed", fault
             if not isinstance(fault, AssessError | OSError):
                 LOG.exception("a building model could not be read")
-        shutil.rmtree(self._folder, ignore_errors=True)
-        self._slot.release()
+        if state != "done" and not self._is_kept:
+            shutil.rmtree(self._folder, ignore_errors=True)
+        if self._slot is not None:
+            self._slot.release()
         with self._lock:
             if self.state != "running":
                 return
@@ -127,15 +142,17 @@ class Import:
                     "remarks": found.remarks,
                 }
 
-    def close(self) -> None:
-        """End it at once, and forget what was read; nothing of it is kept."""
+    def close(self, *, is_kept: bool = False) -> None:
+        """End it at once, and forget what was read, unless its folder is kept for the next process."""
         with self._lock:
+            self._is_kept = is_kept
             if self.state == "running":
                 self.state = "cancelled"
         self._asked.set()
         self._thread.join(timeout=PATIENCE)
         self._found = None
-        shutil.rmtree(self._folder, ignore_errors=True)
+        if not is_kept:
+            shutil.rmtree(self._folder, ignore_errors=True)
 
     def describe(self) -> dict[str, Any]:
         """Return all that the page shows, in the language in use; notes that it was asked for."""
@@ -169,6 +186,7 @@ class Import:
     def note_opened(self, book: str) -> None:
         """Note which opening of a workbook holds it; what was read is forgotten, but for the list of it."""
         self.book, self._found = book, None
+        shutil.rmtree(self._folder, ignore_errors=True)
 
 
 def name_workbook(name: str) -> str:

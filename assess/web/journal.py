@@ -1,19 +1,20 @@
 """What a session holds, on the disk: the workbook as it was opened, and every step since, so that no kill loses any.
 
-A step is written before it is answered. A process that is started again reads the workbook and takes the steps again,
+A step is written before it is taken. A process that is started again reads the workbook and takes the steps again,
 which brings it to the same version with the same history.
 """
 
+import errno
 import json
+import os
 import secrets
-import shutil
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from assess.delivery.folders import is_left, is_ours
+from assess.delivery.folders import FolderLock, is_ours, locked
 from assess.web.limits import PREFIX
 
 HEAD = "book.json"
@@ -25,8 +26,8 @@ TAKEN = "assess-taken-"
 class Journal:
     """The journal in the folder of a session; one is kept, that of the workbook that is open."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, *, is_own: bool = False) -> None:
+        self._folder, self._is_own = folder, is_own  # of the user of this machine, not of one who comes through a proxy
         self._steps: Path | None = None
 
     def begin(self, data: bytes, files: Path, **book: Any) -> None:
@@ -37,7 +38,7 @@ class Journal:
         steps.touch()
         own = self._folder.resolve()
         place = str(files.relative_to(own) if files.is_relative_to(own) else files)
-        head = {**book, "files": place, "opened": opened.name, "steps": steps.name}
+        head = {**book, "files": place, "opened": opened.name, "steps": steps.name, "is_own": self._is_own}
         part = self._folder / f"{HEAD}.part"
         part.write_text(json.dumps(head), encoding="utf-8")
         part.replace(self._folder / HEAD)
@@ -45,10 +46,14 @@ class Journal:
         self._remove(before)
 
     def note(self, *step: Any) -> None:
-        """Write a step."""
+        """Write a step, whole or not at all; OSError where there is no room."""
         if self._steps is not None:
-            with self._steps.open("ab") as file:
-                file.write(json.dumps(step).encode() + b"\n")
+            line = json.dumps(step).encode() + b"\n"
+            with self._steps.open("ab", buffering=0) as file:
+                size = file.seek(0, os.SEEK_END)
+                if file.write(line) != len(line):
+                    file.truncate(size)
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     def end(self) -> None:
         """Forget the workbook."""
@@ -78,31 +83,67 @@ class Journal:
         return (self._folder / head["opened"]).read_bytes(), [json.loads(line) for line in lines[:-1] if line]
 
 
-def take_left(path: Path | None) -> Path | None:
-    """Return a folder with the session that a killed server of this user left, out of the reach of who tidies up.
+def list_saved(head: Mapping[str, Any], steps: Iterable[Sequence[Any]]) -> list[Sequence[Any]]:
+    """Return the version that was saved last, and its digest; behind it those that may have been saved since."""
+    found: list[Sequence[Any]] = [(head["version"], head["digest"])]
+    for what, *given in steps:
+        if what in ("saving", "saved"):
+            found = [*(found if what == "saving" else ()), given]
+    return found
 
-    That of a workbook of the disk, or for None the latest of one that was held. None where there is none.
+
+def set_aside(path: Path | None) -> None:
+    """Put what killed servers of this user have left out of the reach of who tidies up: where it is not saved, or of
+    the workbook that is opened now. The processes of these sessions are waited for: they may still be saving.
     """
-    found = sorted(_find_left(path), key=lambda one: (one / HEAD).stat().st_mtime)
-    if not found:
-        return None
-    taken = Path(tempfile.mkdtemp(prefix=TAKEN))
-    shutil.move(found[-1], taken)
-    return taken / found[-1].name
+    for session, head in _find_left(PREFIX):
+        with suppress(FileNotFoundError, ValueError):  # it is no journal
+            with locked(session):
+                pass
+            if _is_of(head, path) or _is_unsaved(session, head):
+                session.rename(Path(tempfile.mkdtemp(prefix=TAKEN)) / session.name)
 
 
-def put_back(left: Path, folder: Path) -> None:
-    """Move what was left into the folder of a new session."""
-    for one in left.iterdir():
-        shutil.move(one, folder / one.name)
-    shutil.rmtree(left.parent, ignore_errors=True)
+def put_back(path: Path | None, folder: Path) -> bool:
+    """Have the latest session that was set aside be in a folder that is still empty; return whether there is one.
+
+    That of a workbook of the disk, or for None of one that was held.
+    """
+    left = ((session / head["steps"], session) for session, head in _find_left(TAKEN) if _is_of(head, path))
+    for _, session in sorted(((steps.stat().st_mtime_ns, session) for steps, session in left), reverse=True):
+        lock = FolderLock(session.parent)
+        is_free = lock.take() and session.is_dir()
+        if is_free:
+            folder.rmdir()
+            session.rename(folder)
+        lock.release()
+        if is_free:
+            session.parent.rmdir()
+            return True
+    return False
 
 
-def _find_left(path: Path | None) -> Iterator[Path]:
-    for head in Path(tempfile.gettempdir()).glob(f"{PREFIX}*/*/{HEAD}"):
-        session, server = head.parent, head.parent.parent
-        with suppress(OSError, ValueError, KeyError):
-            own = json.loads(head.read_text(encoding="utf-8"))["path"]
-            is_wanted = not own if path is None else bool(own) and path.samefile(own)
-            if is_wanted and not server.is_symlink() and is_ours(server) and is_left(server):
-                yield session
+def _is_of(head: Mapping[str, Any], path: Path | None) -> bool:
+    with suppress(OSError):
+        return bool(head["path"]) and path.samefile(head["path"]) if path is not None else not head["path"]
+    return False
+
+
+def _is_unsaved(session: Path, head: Mapping[str, Any]) -> bool:
+    _, steps = Journal(session).read(head)
+    changes = sum(what not in ("saving", "saved") for what, *_ in steps)
+    return bool(head["version"] + changes > list_saved(head, steps)[0][0])
+
+
+def _find_left(start: str) -> Iterator[tuple[Path, dict[str, Any]]]:
+    """Yield sessions of the own machine, and their heads, in folders of such names, while it has the lock on them."""
+    for path in Path(tempfile.gettempdir()).glob(f"{start}*/*/{HEAD}"):
+        session, server = path.parent, path.parent.parent
+        lock = FolderLock(server)
+        try:
+            if is_ours(server) and lock.take() and lock.is_held:
+                head = Journal(session).read_head()
+                if head.get("is_own"):
+                    yield session, head
+        finally:
+            lock.release()

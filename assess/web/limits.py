@@ -21,7 +21,7 @@ class Limits:
     * `bytes`: the files of one session, `memory`: addresses of its process, `total`: memory of all these processes.
     * `seconds`: time for the answer to a request, `job_seconds`: processor time of a simulation.
     * `wait`: time that a request waits for a process, `sleep`: time without a request of its user after which the
-      process of a session ends, `idle`: the session itself.
+      process of a session ends, `idle`: the session itself, `end`: time that a process has once the server ends.
     * `silence`: time after which a connection is closed that sends nothing of what it has begun.
     """
 
@@ -37,13 +37,14 @@ class Limits:
     wait: float = 30.0
     sleep: float = INF
     idle: float = INF
+    end: float = INF
     silence: float = 20.0
 
 
 OWN = Limits()
 HOSTED = Limits(
     users=50, workers=12, simulations=2, models=2, bytes=300_000_000, memory=4e9, total=3e9, seconds=120.0,
-    job_seconds=7200.0, sleep=600.0, idle=12 * 3600.0,
+    job_seconds=7200.0, sleep=600.0, idle=12 * 3600.0, end=20.0,
 )  # fmt: skip
 """Limits of a server for several users."""
 

@@ -130,17 +130,18 @@ class Server:
                                 timeout_graceful_shutdown=GRACE, timeout_keep_alive=30)  # fmt: skip
         self._uvicorn = _Uvicorn(config)
 
-    def open(self, path: Path | None, left: Path | None = None) -> list[str]:
+    def open(self, path: Path | None) -> list[str]:
         """Open a workbook in the session of the own machine; return what its user should know.
 
-        `left`: of `assess.web.journal.take_left`; without a `path` it alone is opened, which was held.
+        What a killed server has left of it is taken over; without a `path`, of a workbook that was held.
         """
         (user,) = self._keys.users()
-        if left is not None:
-            put_back(left, user.folder)
-        user.link = user.start(user.folder)
-        if path is None:
-            return [fill("The workbook that was open when assess was ended is open again.")] if left else []
+        is_left = put_back(path, user.folder)
+        user.drop_bodies()
+        if is_left or path is not None:
+            user.link = user.start(user.folder)
+        if path is None or user.link is None:
+            return [fill("The workbook that was open when assess was ended is open again.")] if is_left else []
         remarks: list[str] | None = ask_own(user.link, "open", path=str(path.absolute()))["remarks"]
         if remarks is None:
             from assess.web.book import Book
@@ -196,14 +197,20 @@ class Server:
                     total -= own if user.sleep() else 0
 
     def _end(self) -> Ending:
-        ending = Ending()
-        for user in self._keys.users():
-            if user.link is not None:
+        ending, users = Ending(), self._keys.users()
+        with ExitStack() as stack:
+            for user, link in [(user, user.link) for user in users if user.link is not None]:
+                if link.is_gone and not self._place.is_hosted:
+                    user.link = user.start(user.folder)  # to save what it held
+                timer = threading.Timer(min(self._place.limits.end, threading.TIMEOUT_MAX), link.kill)
+                stack.callback(timer.cancel)
+                timer.start()
+            for user in users:
                 with suppress(WorkerGoneError):
-                    found = Ending(**ask_own(user.link, "end"))
+                    found = Ending() if user.link is None else Ending(**ask_own(user.link, "end"))
                     lost = [] if user.stays else found.lost
                     ending = Ending(found.saved or ending.saved, ending.kept + found.kept, ending.lost + lost)
-            user.close(forget=False)
+                user.close(forget=False)
         return ending
 
 

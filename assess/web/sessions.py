@@ -14,7 +14,7 @@ from assess.delivery.folders import is_left, is_ours
 from assess.errors import AssessError
 from assess.i18n import fill
 from assess.web.file_names import make_safe
-from assess.web.importing import FOLDER, READING, SOURCE, Import, Routes
+from assess.web.importing import FOLDER, ORDER, READING, SOURCE, Import, Routes
 from assess.web.jobs import Runs
 from assess.web.journal import Journal
 from assess.web.limits import OWN, PREFIX, Limits, check_room, find_room
@@ -60,9 +60,12 @@ class Session:
     lock: threading.RLock = field(default_factory=threading.RLock)
     runs: Runs = field(init=False)
     _journal: Journal = field(init=False)
+    _slots: Slots = field(init=False)
 
     def __post_init__(self) -> None:
-        self.runs, self._journal = Runs(self.folder, self.limits), Journal(self.folder)
+        self.runs = Runs(self.folder, self.limits)
+        self._slots = Slots(self.folder.parent, "models", self.limits.models, READING)
+        self._journal = Journal(self.folder, is_own=self.home is not None)
 
     def check_room(self, size: int) -> None:
         """Raise RequestError where so many bytes more are too many for one session."""
@@ -102,6 +105,12 @@ class Session:
         """Open again what a process of this session held that was killed, or ended to save memory."""
         from assess.web.book import Book
 
+        for folder in self.folder.glob(f"{FOLDER}*"):
+            try:
+                name, routes, number = json.loads((folder / ORDER).read_text(encoding="utf-8"))
+                self.reading = Import(folder, name, routes, self._slots, number)
+            except (AssessError, OSError, ValueError):
+                shutil.rmtree(folder, ignore_errors=True)
         book = Book.restore(self._journal)
         if book is not None:
             with suppress(OSError, ValueError):
@@ -142,7 +151,6 @@ class Session:
 
     def read_model(self, sent: Path | bytes, name: str, routes: Routes = "none") -> None:
         """Read a building model, which is removed then; an earlier one that is not opened is dropped."""
-        slots = Slots(self.folder.parent, "models", self.limits.models, READING)
         with self.lock:
             if self.reading is not None:
                 self.reading.close()
@@ -152,7 +160,7 @@ class Session:
                 sent.rename(folder / SOURCE)
             else:
                 (folder / SOURCE).write_bytes(sent)
-            self.reading = Import(folder, name, routes, slots)
+            self.reading = Import(folder, name, routes, self._slots)
 
     def cancel_import(self) -> None:
         """End the reading of a building model, or drop what was read."""
@@ -206,7 +214,7 @@ class Session:
             if self.book is not None:
                 self.book.simulator.close()
             if self.reading is not None:
-                self.reading.close()
+                self.reading.close(is_kept=True)
 
 
 def _begin(book: "Book") -> None:

@@ -31,6 +31,8 @@ COOKIE = "assess"
 """Beginning of the name of the cookie; browsers send cookies of a host to all its ports, so its end is the port."""
 WHO = "user.json"
 """In the folder of a session that stays: its user, and its key."""
+BODY = "body-"
+"""Beginning of the name of a file that holds the body of a request."""
 LONGEST_USER = 200
 """Characters of a name that a proxy may give."""
 IN_WORK = 2
@@ -41,7 +43,7 @@ T = TypeVar("T")
 class User:
     """The session of one user; `key` is the value of its cookie.
 
-    * `link`: its process, None until something is asked of it.
+    * `link`: its process, None until something is asked of it; `is_coming`, `is_ending`: it is being started, or ended.
     * `language`: that of its workbook.
     * `seen`: when its user last asked for anything.
     * `in_work`, `at_once`: places of requests, and of those that take no time; `waiting`: how many want one.
@@ -53,11 +55,18 @@ class User:
     def __init__(self, folder: Path, start: Callable[[Path], Link], *, stays: bool = False) -> None:
         self.key, self.folder, self.start, self.stays = secrets.token_urlsafe(32), folder, start, stays
         self.link: Link | None = None
+        self.is_coming = self.is_ending = False
         self.busy, self.last = 0, dict[str, Reply]()
         self.language, self.seen = "", time.monotonic()
         self.in_work, self.at_once = asyncio.Semaphore(IN_WORK), asyncio.Semaphore(1)
         self.waiting, self.is_sending, self.starting = 0, False, asyncio.Lock()
         self._pool = ThreadPoolExecutor(IN_WORK + 2, "assess-user")
+        self.drop_bodies()
+
+    def drop_bodies(self) -> None:
+        """Remove the bodies of requests that a server which was killed has left."""
+        for left in self.folder.glob(f"{BODY}*"):
+            left.unlink(missing_ok=True)
 
     async def run(self, work: Callable[..., T], *args: object) -> T:
         """Return what work returns, in a thread of this session."""
@@ -65,8 +74,8 @@ class User:
 
     @property
     def is_awake(self) -> bool:
-        """Whether its process runs."""
-        return self.link is not None and not self.link.is_gone
+        """Whether its process runs, or is on its way."""
+        return self.is_coming or (self.link is not None and not self.link.is_gone)
 
     def sleep(self) -> bool:
         """End its process unless something runs in it; what it holds is on the disk. Return whether it has ended."""
@@ -75,12 +84,13 @@ class User:
             if link is not None and not ask_own(link, "idle")["idle"]:
                 return False
         self._end()
-        return True
+        return not self.is_awake
 
     def _end(self) -> None:
-        link, self.link = self.link, None
-        if link is not None:
-            link.close()
+        if self.link is not None:
+            self.is_ending = True
+            self.link.close()  # it has its place until then
+            self.is_ending = False
 
     def close(self, *, forget: bool = True) -> None:
         """End its process, and remove its folder unless that stays for a later server."""

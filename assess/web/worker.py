@@ -16,11 +16,12 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 from starlette.responses import Response
 
 from assess.delivery.deliver import saving
+from assess.delivery.folders import locked
 from assess.errors import AssessError
 from assess.i18n import Text, fill
 from assess.processes import OUT_OF_MEMORY, limit_process
@@ -110,6 +111,7 @@ class Worker:
         self._restore()
         self._keeper = Keeper(self.session)
         self._keeper.start()
+        self.session.note_edit()  # what the process before has not saved
 
     def _restore(self) -> None:
         try:
@@ -167,7 +169,7 @@ class Worker:
     def _is_idle(self, _call: Call) -> dict[str, Any]:
         """Return whether nothing runs that would be lost."""
         run, reading = self.session.runs.latest, self.session.reading
-        return {"idle": not (run and run.is_running) and not (reading and reading.state in ("running", "done"))}
+        return {"idle": not (run and run.is_running) and not (reading and reading.state == "running")}
 
     def _end(self, _call: Call) -> dict[str, Any]:
         """Save, or keep changes that cannot be saved; return the fields of `Ending`."""
@@ -203,7 +205,7 @@ def keep_changes(book: "Book", home: Path | None) -> Path | None:
 
 def main() -> None:
     """Answer what comes by the input until it ends."""
-    output, lock = os.fdopen(os.dup(sys.stdout.fileno()), "wb"), threading.Lock()
+    output = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # whatever is printed goes to the standard error
     gc.set_threshold(*COLLECTED)
     if hasattr(os, "nice"):
@@ -212,7 +214,13 @@ def main() -> None:
     if first is None:
         os._exit(0)
     limit_process(first[0]["limits"]["memory"])
-    worker = Worker(Path(sys.argv[1]), first[0])
+    folder = Path(sys.argv[1])
+    with locked(folder):  # for as long as this process lives, which may have to wait for the end of the one before
+        _serve(Worker(folder, first[0]), output)
+
+
+def _serve(worker: Worker, output: BinaryIO) -> None:
+    lock = threading.Lock()
 
     def work(header: dict[str, Any], data: bytes) -> None:
         number = header.pop("number")

@@ -67,10 +67,11 @@ def test_a_model_becomes_a_workbook_with_its_plans_beside_it(served, tmp_path):
     (group,) = [one for one in taken["skipped"] if one["is_furniture"]]
     assert (group["count"], sum(number for _, number in group["types"])) == (14, 14)
     assert taken["remarks"]
-    assert _list_left(tmp_path) == []
+    assert [name for kind in ("body-", "model") for name in list_named(tmp_path / "tmp", kind)] == []
     assert list(server.folder.iterdir()) == []  # nothing is written before it is opened
 
     book = server.client.post("/api/import/open", {"shaking": "MMI VIII, severe"}).json()
+    assert _list_left(tmp_path) == []
     assert (book["name"], book["mode"], book["missing"]) == ("duplex.xlsx", "disk", [])
     assert sorted(one.name for one in server.folder.iterdir()) == [*PLANS, "duplex-import.txt", "duplex.xlsx"]
     live = server.client.get("/api/live").json()

@@ -160,9 +160,8 @@ def test_users_find_their_work_again_after_the_server_was_killed_or_their_proces
     again.headers |= {**ann.headers, "Cookie": f"assess-{again.port}={ann.headers['Cookie'].partition('=')[2]}"}
     assert again.get("/api/book").json()["version"] == version
     assert _value(again, place) == 166
-    pid = find_worker(server, WORKER)
     again.get("/api/state")
-    wait_until(lambda: find_worker(server, WORKER), lambda found: found != pid)
+    wait_until(lambda: find_worker(server, WORKER), lambda found: not found)
     state = again.get("/api/state").json()["state"]
     assert (state["version"], find_worker(server, WORKER)) == (version, 0), "it sleeps on"
     other, _ = _come(server, "ben")

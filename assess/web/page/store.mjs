@@ -11,6 +11,8 @@ const REFUSED = new Set([400, 413, 422]);
 const NAMED = 5;
 const TIMES_REPEATED = 3;
 const SOON_MS = 250; // between two looks for classes that have been simulated
+/** What tells a request from others: one that comes again, as it was not answered, is taken once. */
+const newId = () => Math.random().toString(36).slice(2);
 const SEVERITIES = ["error", "warning", "note"];
 
 class Store extends EventTarget {
@@ -122,7 +124,7 @@ class Store extends EventTarget {
     this.#put(changed);
     endNotices(null);
     return new Promise((resolve) => {
-      this.#queueUp({ edits: changed, before, label, resolve, keys: new Set(changed.map((cell) => key(...cell))) });
+      this.#queueUp({ id: newId(), edits: changed, before, label, resolve, keys: new Set(changed.map((cell) => key(...cell))) });
       this.#send();
     });
   }
@@ -137,6 +139,7 @@ class Store extends EventTarget {
       return;
     }
     const values = new Map(group.edits.map((cell) => [key(...cell), cell]));
+    last.id = group.id;
     last.edits = last.edits.map((cell) => values.get(key(...cell)));
     const earlier = last.resolve;
     last.resolve = (done) => (earlier(done), group.resolve(done));
@@ -158,7 +161,7 @@ class Store extends EventTarget {
       this.#tell("state");
       try {
         const { version, server } = this.state;
-        const body = { version, server, ...(group.path ? (group.body ?? {}) : { edits: group.edits, label: group.label }) };
+        const body = { id: group.id, version, server, ...(group.path ? (group.body ?? {}) : { edits: group.edits, label: group.label }) };
         const change = await post(group.path ?? "/api/edit", body);
         if (book !== this.#books) return;
         this.#queue.shift();
@@ -289,7 +292,7 @@ class Store extends EventTarget {
     const before = cells.map(({ cell: [name, row, at] }) => [name, row, at, this.sheet(name)?.value(row, at)]);
     this.#put(cells.map(({ cell, stored }) => [...cell, stored]));
     const edits = cells.map(({ cell, typed }) => [...cell, typed]);
-    this.#queue.push({ edits, before, label, resolve: () => {}, keys: new Set(edits.map((cell) => key(...cell))) });
+    this.#queue.push({ id: newId(), edits, before, label, resolve: () => {}, keys: new Set(edits.map((cell) => key(...cell))) });
   }
 
   /** Queue what had not been answered; false where that cannot be. */
@@ -391,7 +394,8 @@ class Store extends EventTarget {
 
   #enqueue(path, body = {}) {
     return new Promise((resolve) => {
-      this.#queue.push({ path, body: path === "/api/rows" ? body : null, edits: [], before: [], label: "", resolve, keys: new Set() });
+      const own = { id: newId(), path, body: path === "/api/rows" ? body : null };
+      this.#queue.push({ ...own, edits: [], before: [], label: "", resolve, keys: new Set() });
       this.#send();
     });
   }
