@@ -66,6 +66,7 @@ def test_a_bad_value_is_marked_in_its_cell_and_other_rows_keep_their_classes(sma
     small.select("Item", 2)
     small.page.locator(".problems-button").click()
     small.page.get_by_role("button", name=re.compile("Items!J3")).click()
+    small.cell("Height", 3).click(trial=True)  # the list of problems does not cover it
     expect(small.page.locator("#grid-active")).to_have_text("tall")
     expect(small.page.locator(".sheet-about")).to_contain_text("'tall'")
     expect(small.page.get_by_role("status").filter(has_text="Items!J3")).to_contain_text("tall")

@@ -7,9 +7,10 @@ from playwright.sync_api import expect
 
 from assess.web.limits import PREFIX
 from assess.web.slots import take
+from tests.waiting import wait_until
 from tests.web.opened import write_template
 from tests.web.plan_page import FLOORS, PLACES, ROUTES, SIZES, PlanPage
-from tests.web.sheet_page import CLASS, SheetPage, opened
+from tests.web.sheet_page import CLASS, opened
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -40,9 +41,10 @@ def _counts(page):
 
 def test_a_class_is_pale_until_its_piece_has_been_simulated_and_says_what_it_rests_on(page, server, tmp_path):
     """While another session simulates: a place is free once it has ended."""
-    place = take(next((tmp_path / "tmp").glob(f"{PREFIX}*")), "live", 1)
-    found = page(server)
-    sheet = SheetPage(found, server).open("Items")
+    sheet = opened(page, server).open("Items")
+    folder = next((tmp_path / "tmp").glob(f"{PREFIX}*"))
+    place = wait_until(lambda: take(folder, "live", 1))
+    sheet.select("Height", 2).type("210", "<Enter>")
     expect(sheet.cell(CLASS, 2)).to_have_text(re.compile("^≈ . (low|medium|high|very high)$"))
     expect(sheet.cell(CLASS, 2)).to_have_class(re.compile("pale"))
     header = sheet.page.locator("header .counts-line")
@@ -60,6 +62,7 @@ def test_a_class_is_pale_until_its_piece_has_been_simulated_and_says_what_it_res
     with sheet.page.expect_download():
         sheet.page.get_by_role("link", name="Download a copy").click()
     expect(sheet.page.get_by_role("region", name="Notices")).to_contain_text("Excel shows the class by the formula")
+    sheet.select("Item", 2)
     sheet.page.locator("nav.tabs [data-tab=plan]").click()
     sheet.page.locator(".plan-panel [data-panel=pieces]").click()
     expect(sheet.page.locator(".plan-panel")).to_contain_text(re.compile(r"A1.*%\s\(\d+ to \d+\)", re.DOTALL))
@@ -83,7 +86,8 @@ def test_typing_undo_turning_and_the_slider_change_the_simulated_class_in_every_
     expect(plan.piece(2)).to_have_attribute("aria-label", re.compile(r"chance .*%\s\("))
     sheet.page.locator("nav.tabs [data-tab=sheet]").click()
     expect(first).not_to_have_text(before)  # it topples along the other axis now
-    turned = sheet.settle() and first.inner_text()
+    expect(first).to_have_text(SOLID)
+    turned = first.inner_text()
     sheet.page.locator("nav.tabs [data-tab=what-if]").click()
     results = sheet.page.locator(".results")
     expect(results).to_have_attribute("aria-busy", "false")

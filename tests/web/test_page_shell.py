@@ -145,7 +145,7 @@ def test_the_frame_is_one_line_the_tools_another_and_nothing_moves_when_it_tells
 
 
 # the page loads these when it has nothing else to do: a reload before that would get them for the first time
-LOADED = """() => Promise.all(["overview", "grid", "plan", "what_if", "simulate"]
+LOADED = """() => Promise.all(["overview", "grid", "plan", "what_if", "results"]
     .map((one) => import(`/${one}_view.mjs`))).then((all) => all.length)"""
 
 
@@ -407,6 +407,6 @@ def test_a_view_that_fails_leaves_the_others(page, served_here, office):
     show(found, "what-if")
     expect(found.locator("#view-what-if").get_by_role("alert")).to_contain_text("other views work")
     show(found, "results")
-    expect(found.get_by_role("button", name="Start the run")).to_be_enabled()
+    expect(found.get_by_role("button", name="Make: Report for the client (PDF)")).to_be_enabled()
     assert [one for one in found.errors if "broken" not in one] == []
     found.errors.clear()
