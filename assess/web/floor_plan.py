@@ -5,6 +5,7 @@ it is.
 """
 
 import hashlib
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -58,13 +59,13 @@ class FloorPicture:
     turn: float = 0.0
 
     @property
-    def corners(self) -> list[Point]:
+    def corners(self) -> Sequence[Point]:
         """Its frame [m], from its lower left corner anticlockwise; nothing where it is not known where it lies."""
         if self.left is None or self.bottom is None or self.width is None:
-            return []
-        angle, tall = np.radians(self.turn), self.width * self.aspect
-        local = ((0.0, 0.0), (self.width, 0.0), (self.width, tall), (0.0, tall))
-        return _move(local, (self.left, self.bottom), float(np.cos(angle)), float(np.sin(angle)))
+            return ()
+        angle, tall = math.radians(self.turn), self.width * self.aspect
+        side = (self.left - tall / 2 * math.sin(angle), self.bottom + tall / 2 * math.cos(angle))
+        return rectangle(side, self.turn, (0.0, self.width), tall)
 
     def describe(self, floor: str) -> dict[str, Any]:
         """Return it as the page takes it."""
@@ -78,19 +79,16 @@ class FloorPicture:
 
 def _find_picture(snapshot: "Snapshot", row: Row | None) -> FloorPicture | None:
     """Return the picture of a floor by its row; None where it names none, or one that cannot be used."""
-    if row is None:
-        return None
-    plan = next((one.plan for one in snapshot.inventory.floors if one.row == row.number), None)
+    plan = next((one.plan for one in snapshot.inventory.floors if row and one.row == row.number), None)
     if plan is not None:
         aspect = plan.height / plan.width
         return FloorPicture(plan.content, plan.is_lines, aspect, plan.left, plan.bottom, plan.width, plan.turn_deg)
-    text = row.get("plan")
-    drawing = None if text is None else snapshot.find_drawing(text, row.get("plan_width"))
-    if drawing is None:
+    drawing = row and row.get("plan") and snapshot.find_drawing(row.get("plan"), row.get("plan_width"))
+    if not row or not drawing:
         return None
-    left, bottom, width = (row.get(f"plan_{name}") for name in ("left", "bottom", "width"))
-    return FloorPicture(drawing.content, drawing.is_lines, drawing.aspect, left, bottom,
-                        drawing.width if width is None else width, row.get("plan_turn") or 0.0)  # fmt: skip
+    left, bottom, width, turn = (row.get(f"plan_{name}") for name in ("left", "bottom", "width", "turn"))
+    width = drawing.width if width is None else width
+    return FloorPicture(drawing.content, drawing.is_lines, drawing.aspect, left, bottom, width, turn or 0.0)
 
 
 def _name_piece(row: Row) -> dict[str, Any]:
@@ -119,8 +117,8 @@ def _place(
     lengths = {"x": at[0], "y": at[1], "breadth": drawn, "width": wide, "height": height}
     described = {
         **_name_piece(row), "angle": angle, "anchored": row.get("anchored") or "unknown",
-        **{name: None if one is None else round(one, DECIMALS) for name, one in lengths.items()},
-        "quantity": row.get("quantity") or 1, "missing": [name for name in SIZES if sizes.get(name) is None],
+        **{name: _rounded(one) for name, one in lengths.items()},
+        "missing": [name for name in SIZES if sizes.get(name) is None],
     }  # fmt: skip
     return described, rectangle(at, angle, (-drawn / 2, drawn / 2), wide), falls
 
@@ -136,6 +134,10 @@ def _cut_all(pieces: Sequence[list[Ring]], edge: "BaseGeometry") -> list[list[Ri
         [part for ring in falls for part in ([ring] if next(is_inside) else cut_falls([ring], edge))]
         for falls in pieces
     ]
+
+
+def _rounded(length: float | None) -> float | None:
+    return None if length is None else round(length, DECIMALS)
 
 
 def _round_points(points: Iterable[Point] | Outline) -> list[list[float]]:
@@ -196,10 +198,10 @@ def _draw(tables: Tables, inventory: Inventory, floor: str, picture: FloorPictur
     if edge is not None and any(covered):
         covered = _cut_all(covered, edge[0])
     segments = list(_describe_segments(tables, inventory, floor))
-    outlines = [_round_points(row.get("outline")) for row in places if row.get("outline")]
+    outlines = [_round_points(row.get("outline") or ()) for row in places]
     drawn: list[Iterable[Sequence[float]]] = [footprint for _, footprint, _ in pieces]
-    drawn += [ring for falls in covered for ring in falls]
-    drawn += [*outlines, *(one["outline"] or one["points"] for one in segments)]
+    drawn += [*(ring for falls in covered for ring in falls), *outlines]
+    drawn += [one["outline"] or one["points"] for one in segments]
     drawn.append([(row.get("x"), row.get("y")) for row in places if _is_placed(row)])
     return {
         "frame": _frame([(x, y) for points in drawn for x, y in points], picture),
@@ -212,13 +214,11 @@ def _draw(tables: Tables, inventory: Inventory, floor: str, picture: FloorPictur
         "places": [
             {
                 "row": row.number, "place": row.get("place") or "", "kind": row.get("kind") or "",
-                "outline": _round_points(row.get("outline")) if row.get("outline") else None,
-                **{side: None if row.get(side) is None else round(row.get(side), DECIMALS) for side in ("x", "y")},
+                "outline": outline or None, "x": _rounded(row.get("x")), "y": _rounded(row.get("y")),
             }
-            for row in places
+            for row, outline in zip(places, outlines, strict=True)
         ],
         "segments": segments,
-        "walls": [[one, two] for ring in outlines for one, two in zip(ring, [*ring[1:], ring[0]], strict=True)],
     }  # fmt: skip
 
 
@@ -238,10 +238,9 @@ def _describe_segments(tables: Tables, inventory: Inventory, floor: str) -> Iter
         here = [end for end in ends if end is not None and _is_placed(end) and key(end.get("floor") or "") in own]
         band, outline = bands.get(row.number), None
         if band is not None:  # as far as it goes on round a bend
-            (x, y), half, along = band.start, band.width / 2, (-band.extends_start, band.length + band.extends_end)
-            local = ((along[0], -half), (along[1], -half), (along[1], half), (along[0], half))
-            cos, sin = (band.end[0] - x) / band.length, (band.end[1] - y) / band.length
-            outline = _round_points(_move(local, (x, y), cos, sin))
+            angle = math.degrees(math.atan2(band.end[1] - band.start[1], band.end[0] - band.start[0]))
+            along = (-band.extends_start, band.length + band.extends_end)
+            outline = _round_points(rectangle(band.start, angle, along, band.width))
         names = {"route": "route", "segment": "segment", "from": "start", "to": "end"}
         yield {
             "row": row.number, **{name: row.get(field) or "" for name, field in names.items()}, "outline": outline,
@@ -250,13 +249,8 @@ def _describe_segments(tables: Tables, inventory: Inventory, floor: str) -> Iter
         }  # fmt: skip
 
 
-def _move(local: Iterable[Point], to: Point, cos: float, sin: float) -> list[Point]:
-    """Return points turned by the angle of a cosine and a sine, and moved."""
-    return [(to[0] + x * cos - y * sin, to[1] + x * sin + y * cos) for x, y in local]
-
-
 def _frame(points: Sequence[Point], picture: FloorPicture | None) -> list[float]:
-    corners = picture.corners if picture else []
+    corners = picture.corners if picture else ()
     if framed := points or corners:
         xs, ys = zip(*framed, strict=True)
         box = min(xs), min(ys), max(xs), max(ys)

@@ -57,10 +57,13 @@ def describe_states(
         text = gettext("Routes are not evaluated, as it is not known how these floors shake: {floors}.",
                        floors=say.name_few(floors))  # fmt: skip
         return describe_unknown(tables, text)
-    left_out = _find_left_out(tables, inventory)
-    routes = tabulate_routes(snapshot, found, settings)
-    known, places = {key(one.route) for one in routes.routes}, {one.place: one for one in inventory.places}
-    lost = [(name, why) for name, why in left_out.items() if name and name not in known]
+    left_out, routes = _find_left_out(tables, inventory), tabulate_routes(snapshot, found, settings)
+    stated = {one.route: _describe(one, routes) for one in routes.routes}
+    names, places = {key(name): name for name in stated}, {one.place: one for one in inventory.places}
+    stated |= {names.get(name, name): _unknown(why) for name, why in left_out.items() if name}
+    alone = gettext("no segment joins it to an exit or a stair")
+    rooms = [(one.room, _describe(one, routes)) for one in routes.rooms]
+    rooms += [(name, _unknown(alone)) for name in routes.unjoined_rooms]
     remarks, faulty = list[str](), len(tables["Items"].rows) - len(inventory.items)
     if faulty and (routes.routes or left_out):
         remarks.append(ngettext(
@@ -71,17 +74,10 @@ def describe_states(
         remarks += [*say.describe_routes(routes), *say.say_to_fill_in(routes)]
         remarks += filter(None, [say.say_uncounted(routes)])
     return {
-        "routes": [
-            *({"route": one.route, **(
-                _unknown(left_out[key(one.route)]) if key(one.route) in left_out else _describe(one, routes)
-            )} for one in routes.routes),
-            *({"route": name, **_unknown(why)} for name, why in lost),
-        ],
+        "routes": [{"route": name, **state} for name, state in stated.items()],
         "rooms": [
-            *({"room": one.room, "floor": one.floor, "place_row": places[one.room].row, **_describe(one, routes)}
-              for one in routes.rooms),
-            *({"room": name, "floor": places[name].floor, "place_row": places[name].row,
-               **_unknown(gettext("no segment joins it to an exit or a stair"))} for name in routes.unjoined_rooms),
+            {"room": name, "floor": places[name].floor, "place_row": places[name].row, **state}
+            for name, state in rooms
         ],
         "segments": [
             {"row": one.workbook_row, "route": one.route, "segment": one.segment, **_describe(one, routes)}

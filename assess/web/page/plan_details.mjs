@@ -31,27 +31,19 @@ export class Details extends Section {
 
   draw() {
     const { sheet, rows } = this.store.selection;
-    const key = `${this.currentTool().name} ${sheet} ${rows.join()}`;
-    if (key !== this.#shown) {
-      this.#shown = key;
-      this.#commit();
+    const shown = `${this.currentTool().name} ${sheet} ${rows.join()}`;
+    const typed = this.node.contains(document.activeElement) ? document.activeElement : {};
+    if (shown !== this.#shown) {
+      this.#shown = shown; // what is typed belongs to what was selected: it is written before something else is shown
+      if (typed.dataset?.shown !== undefined && typed.value !== typed.dataset.shown) typed.blur();
       this.#typed = null;
     }
     super.draw();
-    for (const field of this.node.querySelectorAll("[data-shown]")) this.#fillIn(field);
-  }
-
-  /** What is typed belongs to what was selected: it is written before something else is shown. */
-  #commit() {
-    const field = document.activeElement;
-    if (this.node.contains(field) && field.dataset.shown !== undefined && field.value !== field.dataset.shown) field.blur();
-  }
-
-  /** The value of a cell in its field, but not over what is being typed. */
-  #fillIn(field) {
-    const { shown } = field.dataset;
-    if (field !== document.activeElement || field.was !== shown) field.value = shown;
-    field.was = shown;
+    for (const field of this.node.querySelectorAll("[data-shown]")) { // but not over what is being typed
+      const value = field.dataset.shown;
+      if (field !== document.activeElement || field.was !== value) field.value = value;
+      field.was = value;
+    }
   }
 
   content() {
@@ -72,22 +64,19 @@ export class Details extends Section {
   #piece(row) {
     const piece = this.model.pieces.get(row);
     const { key, text, live } = this.scene.pieces.classOf(piece);
-    const unit = this.model.unit;
-    const sizes = ["breadth", "width", "height"].map((name) => (piece.missing.includes(name) ? "?" : number(piece[name] / unit.factor, 2))).join(" × ");
+    const { unit, factor } = this.model.unit;
+    const sizes = ["breadth", "width", "height"].map((name) => (piece.missing.includes(name) ? "?" : number(piece[name] / factor, 2))).join(" × ");
+    const lacking = piece.missing.map((name) => this.store.sheet("Items").column(name)).filter(Boolean);
+    const fillIn = (column) => {
+      const said = t("Fill in {size}: how far it reaches is not known.", { size: column.label });
+      return this.canEdit() ? html`<button type="button" class="quiet to-cell" @click=${() => this.#reveal("Items", row, column)}>${said}</button>` : said;
+    };
     return html`<h2>${this.#typed ?? piece.item}</h2>${piece.description ? html`<p>${piece.description}</p>` : nothing}
       <p>${badge(key, { isPale: isPale(live) })} ${key ? chanceText(live) : text}</p>
       ${classDetail(live) ? html`<p class="hint">${classDetail(live)}</p>` : nothing}
-      <p class="muted">${t("Breadth × Width × Height: {sizes} {unit}", { sizes, unit: unit.unit })}</p>
-      ${piece.missing.map((name) => this.#lacking(row, name))}
+      <p class="muted">${t("Breadth × Width × Height: {sizes} {unit}", { sizes, unit })}</p>
+      ${lacking.map((column) => html`<p class="warning-text">${fillIn(column)}</p>`)}
       ${this.canEdit() ? [this.#fields("Items", [row], PIECE_FIELDS), this.#pieceButtons([row])] : nothing}`;
-  }
-
-  /** A size that is not known, and the way to its cell. */
-  #lacking(row, name) {
-    const column = this.store.sheet("Items").column(name);
-    if (!column) return nothing;
-    const text = t("Fill in {size}: how far it reaches is not known.", { size: column.label });
-    return html`<p class="warning-text">${this.canEdit() ? html`<button type="button" class="quiet to-cell" @click=${() => this.#reveal("Items", row, column)}>${text}</button>` : text}</p>`;
   }
 
   #several(rows) {
@@ -99,12 +88,13 @@ export class Details extends Section {
 
   #arranging(rows) {
     const pieces = () => rows.map((row) => this.model.pieces.get(row));
-    const one = (name, label, poses, isOff = false) => html`<button type="button" class="square" title=${label} aria-label=${label} ?disabled=${isOff}
+    const button = (name, label, poses, isOff = false) => html`<button type="button" class="square" title=${label} aria-label=${label} ?disabled=${isOff}
       @click=${() => this.edits.pose(poses(), label)}>${icon(name)}</button>`;
     const sides = [["left", t("Align left")], ["centre", t("Align centres, one above the other")], ["right", t("Align right")], ["top", t("Align top")], ["middle", t("Align centres, side by side")], ["bottom", t("Align bottom")]];
-    const isFew = rows.length < 3;
-    return html`<div class="arranging" role="group" aria-label=${t("Align and distribute")}>${sides.map(([how, label]) => one(`align-${how}`, label, () => align(pieces(), how)))}
-      ${one("distribute-x", t("Equal gaps from left to right"), () => distribute(pieces(), 0), isFew)}${one("distribute-y", t("Equal gaps from top to bottom"), () => distribute(pieces(), 1), isFew)}</div>`;
+    const gaps = [["x", t("Equal gaps from left to right")], ["y", t("Equal gaps from top to bottom")]];
+    return html`<div class="arranging" role="group" aria-label=${t("Align and distribute")}>
+      ${sides.map(([how, label]) => button(`align-${how}`, label, () => align(pieces(), how)))}
+      ${gaps.map(([name, label], axis) => button(`distribute-${name}`, label, () => distribute(pieces(), axis), rows.length < 3))}</div>`;
   }
 
   #pieceButtons(rows) {
@@ -132,8 +122,8 @@ export class Details extends Section {
       ${this.canEdit() ? html`${this.#fields("Places", [row], PLACE_FIELDS, WITH_WIDTH.includes(place.kind) ? this.#doorWidth(place) : nothing)}
         <div class="buttons">
           ${waiting ? button(html`${icon("walls")}${tn("Place {n} piece along the walls", "Place {n} pieces along the walls", waiting)}`, () => this.edits.placeAlongWalls(place)) : nothing}
-          ${outline ? button(t("Remove outline"), () => this.edits.changePlace(row, { outline: null }, t("outline"))) : nothing}
-          ${button(t("Delete…"), () => this.#delete("Places", row, place.place))}${button(t("Show in the sheet"), () => this.#reveal("Places", row))}</div>
+          ${outline ? button(t("Remove outline"), () => this.edits.change("Places", [row], { outline: null }, t("outline"))) : nothing}
+          ${button(t("Delete…"), () => this.deleteSelected())}${button(t("Show in the sheet"), () => this.#reveal("Places", row))}</div>
         ${outline ? html`<p class="hint">${t("Drag its corners; drag the middle of a side to add one; double-click a corner to remove it.")}</p>` : nothing}` : nothing}`;
   }
 
@@ -156,18 +146,15 @@ export class Details extends Section {
     return html`<h2>${name}</h2>${this.#state("segment", one.row)}
       <p class="muted">${one.points.length ? t("Length {length}", { length: this.model.shownLength(distance(...one.points)) }) : t("A place of it has no X and Y.")}</p>
       ${this.canEdit() ? html`${this.#fields("Routes", [one.row], WAY_FIELDS)}<div class="buttons">
-        ${button(t("Delete…"), () => this.#delete("Routes", one.row, name))}${button(t("Show in the sheet"), () => this.#reveal("Routes", one.row))}</div>` : nothing}`;
+        ${button(t("Delete…"), () => this.deleteSelected())}${button(t("Show in the sheet"), () => this.#reveal("Routes", one.row))}</div>` : nothing}`;
   }
 
   /** The place or the way that is selected. */
-  deleteSelected() {
+  async deleteSelected() {
     const { sheet, row } = this.store.selection;
-    const [place, way] = [this.model.places.get(row), this.model.segments.get(row)];
-    if (sheet === "Places" && place) this.#delete(sheet, row, place.place);
-    else if (sheet === "Routes" && way) this.#delete(sheet, row, `${way.route}, ${way.segment}`);
-  }
-
-  async #delete(sheet, row, name) {
+    const one = { Places: this.model.places, Routes: this.model.segments }[sheet]?.get(row);
+    if (!one) return;
+    const name = one.place ?? `${one.route}, ${one.segment}`;
     const answer = await ask(t("Delete {name} from the workbook? Undo brings it back.", { name }), [[t("Delete"), true], [t("Cancel"), false]]);
     if (answer) this.edits.deleteRows(sheet, [row]);
   }

@@ -34,9 +34,14 @@ export class PlanEdits {
     return edits.length ? this.store.edit(edits, label) : Promise.resolve(true);
   }
 
+  /** Change cells of rows by their fields. */
+  change(sheetName, rows, values, label, step = CENTIMETRE) {
+    return this.#edit(rows.flatMap((row) => this.#cells(sheetName, row, values, step)), label);
+  }
+
   /** Fill in a new row, which is selected then. */
   #addRow(sheetName, row, values, label) {
-    const done = this.#edit(this.#cells(sheetName, row, { floor: this.model.floorValue, ...values }), label);
+    const done = this.change(sheetName, [row], { floor: this.model.floorValue, ...values }, label);
     this.select(sheetName, [row]);
     return done;
   }
@@ -83,26 +88,11 @@ export class PlanEdits {
     return { angle_deg: angle, axis: follows ? choices[after] : undefined };
   }
 
-  move(rows, [dx, dy]) {
-    const poses = rows.map((row) => this.model.pieces.get(row)).filter(Boolean)
-      .map(({ row, x, y }) => ({ row, x: dx ? roundTo(x + dx, CENTIMETRE) : x, y: dy ? roundTo(y + dy, CENTIMETRE) : y }));
-    return this.pose(poses, t("move"));
-  }
-
-  turn(rows, degrees) {
-    const poses = rows.map((row) => this.model.pieces.get(row)).filter(Boolean).map(({ row, angle }) => ({ row, angle: angle + degrees }));
-    return this.pose(poses, t("turn"));
-  }
-
   /** Put a piece that is in the list onto the plan. */
   place(row, [x, y]) {
     const floor = this.model.isHere("Items", row) ? undefined : this.model.floorValue;
     this.select("Items", [row]);
-    return this.#edit(this.#cells("Items", row, { x, y, floor }), t("place on the plan"));
-  }
-
-  takeOff(rows) {
-    return this.#edit(rows.flatMap((row) => this.#cells("Items", row, { x: null, y: null })), t("take off the plan"));
+    return this.change("Items", [row], { x, y, floor }, t("place on the plan"));
   }
 
   deleteRows(name, rows) {
@@ -209,12 +199,7 @@ export class PlanEdits {
   /** The width of a door is the clear width of the ways through it. */
   doorWidth(place, width) {
     this.model.doorWidths.set(place.row, width);
-    return this.#edit(this.model.waysAt(place).flatMap((one) => this.#cells("Routes", one.row, { clear_width: width })), t("width of a door"));
-  }
-
-  /** Another outline of a place, or another point. */
-  changePlace(row, values, label) {
-    return this.#edit(this.#cells("Places", row, values), label);
+    return this.change("Routes", this.model.waysAt(place).map((one) => one.row), { clear_width: width }, t("width of a door"));
   }
 
   /** Another name for a place, also where segments name it. */
@@ -259,15 +244,9 @@ export class PlanEdits {
     return { row: placeRow, place: made.place, x, y };
   }
 
-  // ---- the picture
-
   /** Where the picture lies, as the four numbers of the floor. */
   placePicture({ left, bottom, width, turn }, label) {
     const values = { plan_left: left, plan_bottom: bottom, plan_width: width, plan_turn: roundTo(turn, 0.01) };
-    return this.#edit(this.#cells("Floors", this.model.plan.floor_row, values, MILLIMETRE), label);
-  }
-
-  namePicture(name) {
-    return this.#edit(this.#cells("Floors", this.model.plan.floor_row, { plan: name }), t("picture"));
+    return this.change("Floors", [this.model.plan.floor_row], values, label, MILLIMETRE);
   }
 }

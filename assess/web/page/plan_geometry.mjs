@@ -117,8 +117,13 @@ export function snapSides(sides, lines, tolerance) {
   const [first] = found;
   if (!first) return { shift: [0, 0], guides: [] };
   const second = found.find((one) => Math.abs(cross(one.n, first.n)) > APART);
+  const along = ({ n: [x, y], offset }) => [x * offset, y * offset];
+  const meet = (one, other) => { // the shift that satisfies both
+    const det = cross(one.n, other.n);
+    return [(one.offset * other.n[1] - other.offset * one.n[1]) / det, (one.n[0] * other.offset - other.n[0] * one.offset) / det];
+  };
   const guide = ({ line, ends }) => [pointOn(line, Math.min(0, ...ends)), pointOn(line, Math.max(line.length, ...ends))];
-  return { shift: second ? meet(first, second) : first.n.map((one) => one * first.offset), guides: [first, second].filter(Boolean).map(guide) };
+  return { shift: second ? meet(first, second) : along(first), guides: [first, second].filter(Boolean).map(guide) };
 }
 
 function compare(side, line, tolerance) {
@@ -131,12 +136,6 @@ function compare(side, line, tolerance) {
   return gap > REACH ? null : { n, offset, cost: Math.abs(offset) + 0.02 * gap, line, ends };
 }
 
-/** The shift that satisfies both. */
-function meet(one, other) {
-  const det = cross(one.n, other.n);
-  return [(one.offset * other.n[1] - other.offset * one.n[1]) / det, (one.n[0] * other.offset - other.n[0] * one.offset) / det];
-}
-
 /** A drawn point: on a corner, else on a wall, else level with the point before it. */
 export function snapPoint(at, { points, lines, before }, tolerance) {
   const corner = nearest(points.map((point) => ({ point, off: distance(point, at) })), tolerance);
@@ -147,6 +146,7 @@ export function snapPoint(at, { points, lines, before }, tolerance) {
   return { point, guides: [wall && [wall.a, wall.b], level && [before, level.point]].filter(Boolean) };
 }
 
+/** On the vertical or the level line through another point: {point, along}, the axis that stays. */
 function levelWith([x, y], [bx, by], tolerance) {
   const [dx, dy] = [Math.abs(x - bx), Math.abs(y - by)];
   if (Math.min(dx, dy) > tolerance) return null;
@@ -188,10 +188,8 @@ export function distribute(pieces, axis) {
 }
 
 /**
- * Stand pieces along the walls of a room: the longer side on the wall, the largest first, along the longest wall first.
- * @param {object[]} pieces {row, breadth, width, axis}; axis: 0 or 1 where Breadth has to run along X or Y, else -1
- * @param {number[][][]} taken convex rings on which nothing may stand
- * @returns {object[]} poses of those that find room
+ * Stand pieces along the walls of a room, the largest first, clear of convex rings: the poses of those that find room. A
+ * piece is {row, breadth, width, axis}; axis: 0 or 1 where its Breadth has to run along X or Y, else -1.
  */
 export function standAlongWalls(ring, pieces, taken) {
   const walls = sidesOf(ring).sort((a, b) => b.length - a.length);

@@ -32,9 +32,7 @@ export const listKeys = () => [
 ];
 
 export class PlanKeys {
-  clipboard = [];
-  copiedAt = null; // where the pointer was
-  pastes = 0; // since it moved
+  #clipboard = { rows: [], at: null, pastes: 0 }; // where the pointer was, and how often they were pasted since it moved
   #burst = null;
   #leaves = false;
   #pointer = null;
@@ -44,8 +42,8 @@ export class PlanKeys {
     this.root.addEventListener("keydown", (event) => this.#down(event));
     this.root.addEventListener("keyup", (event) => event.key in ARROWS && this.endBurst());
     this.root.addEventListener("focusout", () => this.endBurst());
-    const { svg } = this.viewport;
-    svg.addEventListener("pointermove", (event) => (this.#pointer = this.viewport.toWorld(this.viewport.toLocal(event.clientX, event.clientY))));
+    const { svg, viewport } = this;
+    svg.addEventListener("pointermove", ({ clientX, clientY }) => (this.#pointer = viewport.toWorld(viewport.toLocal(clientX, clientY))));
     svg.addEventListener("pointerleave", () => (this.#pointer = null));
     svg.addEventListener("focusin", (event) => this.#onFocus(event));
   }
@@ -82,13 +80,13 @@ export class PlanKeys {
     const rows = this.#rows();
     if (key === "a") return this.edits.select("Items", this.pieces.order()), true;
     if (!this.canEdit()) return false;
-    if (key === "d" && rows.length) return this.#copy(rows, [APART, -APART]), true;
-    if (key === "c" && rows.length && !String(getSelection())) {
-      Object.assign(this, { clipboard: rows, copiedAt: this.#pointer, pastes: 0 });
-      this.say(tn("{n} piece copied", "{n} pieces copied", rows.length));
-      return true;
-    }
-    return key === "v" && this.#paste();
+    if (key === "v") return this.#paste(this.#clipboard);
+    if (!rows.length) return false;
+    if (key === "d") return this.#copy(rows, [APART, -APART]), true;
+    if (key !== "c" || String(getSelection())) return false;
+    this.#clipboard = { rows, at: this.#pointer, pastes: 0 };
+    this.say(tn("{n} piece copied", "{n} pieces copied", rows.length));
+    return true;
   }
 
   #copy(rows, shift) {
@@ -98,21 +96,18 @@ export class PlanKeys {
   }
 
   /** Paste at the pointer where it was moved over the plan, else next to the original, or in the middle on another floor. */
-  #paste() {
-    const rows = this.clipboard;
-    const [pointer, before] = [this.#pointer, this.copiedAt];
-    const at = rows.map((row) => ({ x: this.model.length("Items", row, "x"), y: this.model.length("Items", row, "y") })).filter(isPlaced);
-    if (!at.length) return rows.length > 0;
-    const centre = ["x", "y"].map((axis) => at.reduce((sum, one) => sum + one[axis], 0) / at.length);
+  #paste({ rows, at, pastes }) {
+    const pointer = this.#pointer;
+    const all = rows.map((row) => ({ x: this.model.length("Items", row, "x"), y: this.model.length("Items", row, "y") })).filter(isPlaced);
+    if (!all.length) return rows.length > 0;
+    const centre = ["x", "y"].map((axis) => all.reduce((sum, one) => sum + one[axis], 0) / all.length);
     const isHere = rows.some((row) => this.model.pieces.has(row));
-    const hasMoved = pointer && (!before || pointer[0] !== before[0] || pointer[1] !== before[1]);
-    if (hasMoved) this.pastes = 0;
+    const hasMoved = pointer && String(pointer) !== String(at);
     const first = hasMoved || (pointer && !isHere) ? pointer : isHere ? [centre[0] + APART, centre[1] - APART] : this.viewport.centre;
-    const apart = [this.pastes * APART, -this.pastes * APART]; // never one over the other
-    this.copiedAt = pointer;
-    this.pastes += 1;
-    this.#copy(rows, [0, 1].map((i) => roundTo(first[i] + apart[i] - centre[i], FINE)));
-    this.say(tn("{n} piece pasted", "{n} pieces pasted", at.length));
+    const n = hasMoved ? 0 : pastes; // never one over the other
+    this.#clipboard = { rows, at: pointer, pastes: n + 1 };
+    this.#copy(rows, [n * APART, -n * APART].map((by, i) => roundTo(first[i] + by - centre[i], FINE)));
+    this.say(tn("{n} piece pasted", "{n} pieces pasted", all.length));
     return true;
   }
 
@@ -139,9 +134,9 @@ export class PlanKeys {
   }
 
   turn(rows, degrees) {
-    this.edits.turn(rows, degrees);
-    const piece = this.model.pieces.get(rows[0]);
-    if (rows.length === 1) this.say(t("{item}: angle {angle}°", { item: piece.item, angle: piece.angle }));
+    this.edits.pose(rows.map((row) => ({ row, angle: this.model.pieces.get(row).angle + degrees })), t("turn"));
+    const { item, angle } = this.model.pieces.get(rows[0]);
+    if (rows.length === 1) this.say(t("{item}: angle {angle}°", { item, angle }));
   }
 
   /** Tab goes on in the order of reading; past the last, and after Escape, it leaves. */
@@ -176,29 +171,38 @@ export class PlanKeys {
   #arrow(event) {
     const rows = this.#rows();
     if (!rows.length || !this.canEdit() || event.altKey) return false;
-    const [dx, dy] = ARROWS[event.key].map((one) => one * (event.shiftKey ? FINE : STEP));
-    if (this.#burst && this.#burst.rows.join() !== rows.join()) this.endBurst();
-    this.#burst ??= { rows, shift: [0, 0] };
-    this.model.hold();
-    const { shift } = this.#burst;
-    shift[0] = roundTo(shift[0] + dx, FINE);
-    shift[1] = roundTo(shift[1] + dy, FINE);
-    this.pieces.preview(rows.map((row) => this.model.pieces.get(row)).map((one) => ({ ...one, x: one.x + shift[0], y: one.y + shift[1] })));
-    this.scene.drawFalls();
-    this.select.showHandles();
+    const step = event.shiftKey ? FINE : STEP;
+    if (String(this.#burst?.rows) !== String(rows)) this.endBurst();
+    this.model.isHeld = true;
+    const shift = ARROWS[event.key].map((one, i) => roundTo((this.#burst?.shift[i] ?? 0) + one * step, FINE));
+    this.#burst = { rows, shift };
+    this.#preview(this.#poses());
     return true;
   }
 
-  endBurst() {
-    const burst = this.#burst;
-    this.#burst = null;
-    if (!burst) return;
-    this.edits.move(burst.rows, burst.shift);
-    this.pieces.endPreview();
-    this.model.release();
+  /** Where the pieces of the burst stand; along an axis that they are not moved along, as before. */
+  #poses() {
+    const { rows, shift: [dx, dy] } = this.#burst;
+    const moved = (value, by) => (by ? roundTo(value + by, FINE) : value);
+    const pieces = rows.map((row) => this.model.pieces.get(row)).filter(Boolean);
+    return pieces.map((one) => ({ ...one, x: moved(one.x, dx), y: moved(one.y, dy) }));
+  }
+
+  #preview(poses) {
+    if (poses) this.pieces.preview(poses);
+    else this.pieces.endPreview();
     this.scene.drawFalls();
     this.select.showHandles();
-    const piece = this.model.pieces.get(burst.rows[0]);
+  }
+
+  endBurst() {
+    if (!this.#burst) return;
+    const poses = this.#poses();
+    this.#burst = null;
+    this.edits.pose(poses.map(({ row, x, y }) => ({ row, x, y })), t("move"));
+    this.model.release();
+    this.#preview(null);
+    const [piece] = poses;
     if (piece) this.say(`${piece.item}: ${this.model.shownAt([piece.x, piece.y])}`);
   }
 }

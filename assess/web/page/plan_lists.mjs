@@ -39,10 +39,7 @@ class List extends Section {
     return html`<ul class="rows">${all.slice(0, MOST).map(row)}${rest > 0 ? html`<li>${tn("{n:,} more", "{n:,} more", rest)}</li>` : nothing}</ul>`;
   }
 
-  /**
-   * Buttons are dragged onto the plan: a rectangle of the piece's size follows the pointer; Enter puts it in the middle.
-   * @param {(dataset) => {size: () => {breadth, width, angle}, drop: (at: number[]) => void}} find of a button
-   */
+  /** Buttons are dragged onto the plan, or put in its middle by Enter; `find(dataset)` has the size() of one, and drop(at). */
   dragFrom(find) {
     let held = null; // {from, button, size, drop}
     let ghost = null;
@@ -150,14 +147,11 @@ export class TypeList extends List {
     const { types } = this.model;
     if (!types.length) this.model.loadTypes().then((found) => found.length && this.draw()).catch(() => {});
     const found = types.filter((one) => this.matches(one.type));
-    return html`${this.search(t("Find a type"))}<p class="hint">${t("Drag a type onto the plan, or press Enter to put it in the middle. Each becomes a row of the sheet.")}</p>
-      ${found.length ? this.rows(found, (one) => this.#row(one)) : html`<p class="muted">${types.length ? t("No type has such a name.") : t("The catalogue of this workbook is empty.")}</p>`}`;
-  }
-
-  #row(one) {
     const { unit, factor } = this.model.unit;
-    const sizes = [one.breadth, one.width, one.height].map((size) => (size ? number(size / factor, 2) : "?")).join(" × ");
-    return html`<li><button type="button" class="quiet row draggable" data-type=${one.type}><b>${one.type}</b><span class="end">${sizes} ${unit}</span></button></li>`;
+    const sizes = ({ breadth, width, height }) => [breadth, width, height].map((one) => (one ? number(one / factor, 2) : "?")).join(" × ");
+    const row = (one) => html`<li><button type="button" class="quiet row draggable" data-type=${one.type}><b>${one.type}</b><span class="end">${sizes(one)} ${unit}</span></button></li>`;
+    return html`${this.search(t("Find a type"))}<p class="hint">${t("Drag a type onto the plan, or press Enter to put it in the middle. Each becomes a row of the sheet.")}</p>
+      ${found.length ? this.rows(found, row) : html`<p class="muted">${types.length ? t("No type has such a name.") : t("The catalogue of this workbook is empty.")}</p>`}`;
   }
 }
 
@@ -169,7 +163,7 @@ export class RouteLists extends List {
   }
 
   content() {
-    const { routes, routesOld } = this.model;
+    const { model, model: { routes, routesOld } } = this;
     if (!routes) return html`<p class="muted">${t("Computing…")}</p>`;
     this.node.classList.toggle("old", routesOld);
     this.node.setAttribute("aria-busy", String(routesOld));
@@ -177,8 +171,14 @@ export class RouteLists extends List {
     if (!routes.routes.length && !routes.rooms.length) {
       return html`${error}<p class="muted">${t("The workbook has no routes. Draw rooms, doors and exits, then ways between them: their states are shown here.")}</p>${this.#drawn()}`;
     }
+    const segments = Map.groupBy(model.segments.values(), (one) => nameKey(one.route));
+    const ofRoutes = routes.routes.map((one) => ({ name: one.route, state: one, sheet: "Routes", rows: (segments.get(nameKey(one.route)) ?? []).map(({ row }) => row) }));
+    const ofRooms = routes.rooms.filter((one) => this.#all || nameKey(one.floor) === nameKey(model.floor))
+      .map((one) => ({ name: one.room, state: one, sheet: "Places", rows: model.places.has(one.place_row) ? [one.place_row] : [] }));
+    const remarks = routes.remarks.map((text) => html`<p class="hint">${text}</p>`);
     return html`${error}<label class="check"><input type="checkbox" @change=${({ target }) => ((this.#all = target.checked), this.draw())}>${t("Of all floors")}</label>
-      ${this.#group(t("Routes"), this.#routes())}${this.#group(t("Rooms"), this.#rooms())}${this.#drawn()}${this.#remarks(routes)}`;
+      ${this.#group(t("Routes"), ofRoutes.filter(({ rows }) => this.#all || rows.length))}${this.#group(t("Rooms"), ofRooms)}${this.#drawn()}
+      ${remarks.length ? html`<details><summary>${t("About these states")}</summary>${remarks}</details>` : nothing}`;
   }
 
   /** All rooms, exits and ways of the floor, so that each can be reached by keys. */
@@ -193,28 +193,13 @@ export class RouteLists extends List {
       html`<li><button type="button" class="quiet row" @click=${() => this.goTo(sheet, [row])}><b>${name}</b><span class="end">${about}</span></button></li>`)}</ul></details>`;
   }
 
-  #routes() {
-    const own = Map.groupBy(this.model.segments.values(), (one) => nameKey(one.route));
-    return this.model.routes.routes.filter((one) => this.#all || own.has(nameKey(one.route)))
-      .map((one) => [one.route, one, () => this.goTo("Routes", own.get(nameKey(one.route)).map(({ row }) => row)), own.has(nameKey(one.route))]);
-  }
-
-  #rooms() {
-    return this.model.routes.rooms.filter((one) => this.#all || nameKey(one.floor) === nameKey(this.model.floor))
-      .map((one) => [one.room, one, () => this.goTo("Places", [one.place_row]), this.model.places.has(one.place_row)]);
-  }
-
   /** The worst first. */
   #group(title, all) {
     const order = ["blocked", "doubtful", "not_known", "open"];
-    const rank = ([, { state, standing, chance }]) => order.indexOf(state) - (standing ? 1 : 0) - (chance ?? 0) / 2;
-    const rows = all.sort((a, b) => rank(a) - rank(b)).map(([name, state, run, isHere]) => html`<li>
-      <button type="button" class="quiet row ${stateCss(state)}" ?disabled=${!isHere} title=${state.detail} @click=${run}>
+    const rank = ({ state: { state, standing, chance } }) => order.indexOf(state) - (standing ? 1 : 0) - (chance ?? 0) / 2;
+    const items = all.sort((a, b) => rank(a) - rank(b)).map(({ name, state, sheet, rows }) => html`<li>
+      <button type="button" class="quiet row ${stateCss(state)}" ?disabled=${!rows.length} title=${state.detail} @click=${() => this.goTo(sheet, rows)}>
         <span class="state-word">${state.word}</span><b>${name}</b><span class="detail">${state.detail}</span></button></li>`);
-    return rows.length ? html`<h2 class="group-head">${title} (${rows.length})</h2><ul class="rows states">${rows}</ul>` : nothing;
-  }
-
-  #remarks({ remarks }) {
-    return remarks.length ? html`<details><summary>${t("About these states")}</summary>${remarks.map((text) => html`<p class="hint">${text}</p>`)}</details>` : nothing;
+    return items.length ? html`<h2 class="group-head">${title} (${items.length})</h2><ul class="rows states">${items}</ul>` : nothing;
   }
 }

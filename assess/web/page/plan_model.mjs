@@ -36,17 +36,16 @@ export class PlanModel extends EventTarget {
   segments = new Map();
   types = [];
   isShown = false;
+  isHeld = false; // while something is dragged answers wait
   isRefitted = false; // whether the next answer is to be seen whole
   doorWidths = new Map(); // of doors that no way leads through yet, by their rows [m]
   #book = "";
   #floor = null;
   #shownFloor = null;
-  #asked = 0;
   #timer = 0;
   #routesTimer = 0;
-  #routesAsked = 0;
   #abort = null;
-  #held = false;
+  #routesAbort = null;
   #isStale = true;
   #routesStamp = null;
 
@@ -67,10 +66,6 @@ export class PlanModel extends EventTarget {
     this.isShown = true;
     if (this.#isStale || !this.plan) this.#ask();
     this.#askRoutesSoon(0);
-  }
-
-  hide() {
-    this.isShown = false;
   }
 
   // ---- the unit of lengths
@@ -133,15 +128,13 @@ export class PlanModel extends EventTarget {
 
   async #ask() {
     if (!this.isShown || !this.store.book) return;
-    const asked = ++this.#asked;
     this.#abort?.abort();
     this.#abort = new AbortController();
     try {
       const query = this.#floor === null ? "" : `?floor=${encodeURIComponent(this.#floor)}`;
-      const answer = await get(`/api/plan${query}`, this.#abort.signal);
-      if (asked === this.#asked) this.#take(answer);
+      this.#take(await get(`/api/plan${query}`, this.#abort.signal));
     } catch (error) {
-      if (error.name === "AbortError" || asked !== this.#asked) return;
+      if (error.name === "AbortError") return;
       this.error = error.message;
       this.#tell("plan");
     }
@@ -151,8 +144,8 @@ export class PlanModel extends EventTarget {
   #take(answer) {
     const { store } = this;
     if (store.waiting || answer.version < store.state.version) return;
-    this.#isStale = this.#held;
-    if (this.#held) return;
+    this.#isStale = this.isHeld;
+    if (this.isHeld) return;
     const isOther = this.#shownFloor !== answer.floor;
     this.plan = answer;
     this.#floor = this.#shownFloor = answer.floor;
@@ -163,13 +156,8 @@ export class PlanModel extends EventTarget {
     this.#tell("plan");
   }
 
-  /** While something is dragged, answers wait. */
-  hold() {
-    this.#held = true;
-  }
-
   release() {
-    this.#held = false;
+    this.isHeld = false;
     if (this.#isStale) this.#ask();
   }
 
@@ -183,14 +171,11 @@ export class PlanModel extends EventTarget {
   }
 
   async #askRoutes() {
-    const asked = ++this.#routesAsked;
-    let answer;
-    try {
-      answer = await get("/api/routes");
-    } catch (error) {
-      answer = { version: null, routes: [], rooms: [], segments: [], remarks: [], problems: [], error: error.message };
-    }
-    if (asked !== this.#routesAsked) return;
+    this.#routesAbort?.abort();
+    this.#routesAbort = new AbortController();
+    const failed = ({ name, message }) => (name === "AbortError" ? null : { version: null, routes: [], rooms: [], segments: [], remarks: [], error: message });
+    const answer = await get("/api/routes", this.#routesAbort.signal).catch(failed);
+    if (!answer) return;
     this.routes = answer;
     this.#routesStamp = answer.stamp ?? null;
     this.routesOld = answer.version !== null && answer.version < this.store.state.version;

@@ -142,16 +142,15 @@ export class Picture extends Section {
 
   #actions({ placed, width }) {
     const status = placed ? t("Placed: {width} wide.", { width: this.model.shownLength(width) }) : t("Not placed yet: it is fitted to the plan until then.");
+    const unlock = ({ target }) => {
+      this.isUnlocked = target.checked;
+      this.select.showHandles();
+      this.viewport.svg.classList.toggle("picture-unlocked", this.isUnlocked);
+    };
     return html`<p class=${placed ? "muted" : "warning-text"}>${status}</p>
       <div class="buttons"><button type="button" class=${placed ? "" : "primary"} @click=${() => this.setTool("placing")}>${t("Place by two points…")}</button></div>
-      <label class="check"><input type="checkbox" .checked=${this.isUnlocked} @change=${({ target }) => this.#unlock(target.checked)}>${t("Unlocked: drag and turn the picture")}</label>
+      <label class="check"><input type="checkbox" .checked=${this.isUnlocked} @change=${unlock}>${t("Unlocked: drag and turn the picture")}</label>
       ${this.#chooser(t("Another picture…"))}`;
-  }
-
-  #unlock(on) {
-    this.isUnlocked = on;
-    this.select.showHandles();
-    this.viewport.svg.classList.toggle("picture-unlocked", on);
   }
 
   #steps() {
@@ -212,7 +211,7 @@ export class Picture extends Section {
   async #add(input) {
     const [file] = input.files;
     input.value = ""; // the same file may be chosen for another floor
-    if (!file || !(await this.edits.namePicture(file.name))) return;
+    if (!file || !(await this.edits.change("Floors", [this.model.plan.floor_row], { plan: file.name }, t("picture")))) return;
     await whenSent(this.store);
     if (!this.store.book.missing.some((one) => one.name === file.name)) return;
     try {

@@ -143,17 +143,13 @@ export class PlanPointer {
       this.#pinch = this.#spread();
     }
     if (this.#touches.size > 1) return;
+    const isDraggable = this.canEdit() && (this.currentTool().takesTouch || event.target.closest(".piece, .handle")); // by a finger
     if (event.button === 1) event.preventDefault();
-    if (event.button === 1 || this.#isSpace || (isTouch && this.#pansByTouch(event))) this.#pan = { from: at, first: at, event };
+    if (event.button === 1 || this.#isSpace || (isTouch && !isDraggable)) this.#pan = { from: at, first: at, event };
     else if (event.button === 0) {
       this.#tool = this.currentTool();
       this.#tool.down?.(this.#point(event));
     }
-  }
-
-  /** One finger moves the view, unless it lies on something that can be dragged or a tool waits for points. */
-  #pansByTouch({ target }) {
-    return !this.canEdit() || (!this.currentTool().takesTouch && !target.closest(".piece, .handle"));
   }
 
   #move(event) {

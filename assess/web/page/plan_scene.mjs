@@ -16,8 +16,8 @@ const ON_WALL = 0.15; // distance from a wall up to which a door is one of it [m
 const SIGN_PX = 46; // length of an open segment from which its sign is drawn
 const MARKS = {
   exit: "M-7 -3H0V-7L8 0L0 7V3H-7Z", stair: "M-7 6V2.5H-3.5V-1H0V-4.5H3.5V-8H7V6Z", door: "M-5 0A5 5 0 1 0 5 0A5 5 0 1 0 -5 0Z",
-  room: "M-3 0A3 3 0 1 0 3 0A3 3 0 1 0 -3 0Z", corridor: "M-3 0A3 3 0 1 0 3 0A3 3 0 1 0 -3 0Z",
 };
+const DOT = "M-3 0A3 3 0 1 0 3 0A3 3 0 1 0 -3 0Z"; // of all others
 
 const path = (ring, isClosed = true) => ring.map(([x, y], i) => `${i ? "L" : "M"}${x} ${-y}`).join("") + (isClosed ? "Z" : "");
 
@@ -118,8 +118,9 @@ export class Scene {
     const [places, { outlined, walls }] = [[...model.places.values()], model];
     const segments = this.showsRoutes ? [...model.segments.values()].filter((one) => one.points.length === 2) : [];
     const marks = this.showsRoutes ? places.filter(isPlaced) : [];
-    this.rooms.replaceChildren(...outlined.map((one) => this.#room(one)), ...places.flatMap((one) => this.#opening(one, walls)));
-    this.bands.replaceChildren(...segments.map((one) => this.#band(one)));
+    this.rooms.replaceChildren(...outlined.map(({ row, place, outline }) => this.#group("room", "Places", row, place, null, svg("path", { d: path(outline) }))), ...places.flatMap((one) => this.#opening(one, walls)));
+    this.bands.replaceChildren(...segments.map(({ row, route, segment, points, outline }) => this.#group("band", "Routes", row, `${route}, ${segment}`, null,
+      outline && svg("path", { class: "ground", d: path(outline) }), svg("path", { class: "line", d: path(points, false) }))));
     this.marks.replaceChildren(...segments.flatMap((one) => this.#segmentSign(one)), ...marks.map((one) => this.#mark(one)));
     this.viewport.svg.classList.toggle("states-old", model.routesOld);
   }
@@ -137,10 +138,6 @@ export class Scene {
     return svg("g", { class: classes, [sheet === "Places" ? "data-place" : "data-segment"]: row, ...props }, svg("title", { text }), ...children);
   }
 
-  #room({ row, place, outline }) {
-    return this.#group("room", "Places", row, place, null, svg("path", { d: path(outline) }));
-  }
-
   /** A door or an exit on a wall: a gap as wide as it. */
   #opening(place, walls) {
     const { x, y, kind } = place;
@@ -149,11 +146,6 @@ export class Scene {
     const [half, jamb] = [(this.model.widthOf(place) ?? DOOR) / 2, 5 / this.viewport.scale];
     return groupAt([x, y], { class: "opening", transform: `translate(${x} ${-y}) rotate(${-direction(wall.a, wall.b)})`, "aria-hidden": "true" },
       svg("path", { class: "gap", d: `M${-half} 0H${half}` }), svg("path", { d: `M${-half} ${-jamb}V${jamb}M${half} ${-jamb}V${jamb}` }));
-  }
-
-  #band({ row, route, segment, points, outline }) {
-    return this.#group("band", "Routes", row, `${route}, ${segment}`, null,
-      outline && svg("path", { class: "ground", d: path(outline) }), svg("path", { class: "line", d: path(points, false) }));
   }
 
   #segmentSign({ row, points }) {
@@ -168,7 +160,7 @@ export class Scene {
   #mark(place) {
     const { row, kind, x, y } = place;
     const state = this.model.stateOf("place", row);
-    const sign = state ? svg("g", { class: "state-sign", "aria-hidden": "true" }, svg("circle", { r: 8 }), signOf(state)) : svg("path", { d: MARKS[kind] ?? MARKS.corridor });
+    const sign = state ? svg("g", { class: "state-sign", "aria-hidden": "true" }, svg("circle", { r: 8 }), signOf(state)) : svg("path", { d: MARKS[kind] ?? DOT });
     return this.#group(`mark mark-${kind || "point"}`, "Places", row, place.place, { transform: `translate(${x} ${-y})` },
       svg("g", { class: "px" }, svg("circle", { class: "reach", r: 12 }), sign, this.#name(place)));
   }

@@ -33,7 +33,7 @@ export class SelectTool {
     if (!gesture.isMoved) {
       if (!isDrag(gesture.from.px, point.px)) return;
       gesture.isMoved = true;
-      this.model.hold();
+      this.model.isHeld = true;
     }
     gesture.last = point;
     gesture.frame ??= requestAnimationFrame(() => {
@@ -195,7 +195,7 @@ export class SelectTool {
         at = this.snapDrawn(point, null, [row]).point;
         this.scene.sketch([], [{ at, text: this.model.shownAt(at) }], [[[x, y], at]]);
       },
-      drop: () => this.edits.changePlace(row, { x: at[0], y: at[1] }, t("move")),
+      drop: () => this.edits.change("Places", [row], { x: at[0], y: at[1] }, t("move")),
     };
   }
 
@@ -268,7 +268,7 @@ export class SelectTool {
         this.scene.sketch([{ name: "drawn", points: ring, isClosed: true }], [{ at: found.point, text }], found.guides);
         this.showHandles();
       },
-      drop: () => this.edits.changePlace(row, { outline: ring }, t("outline")),
+      drop: () => this.edits.change("Places", [row], { outline: ring }, t("outline")),
     };
   }
 
@@ -276,6 +276,6 @@ export class SelectTool {
     const row = this.#selectedPlace;
     const ring = this.model.places.get(row)?.outline;
     if (ring?.length <= 3) this.say(t("An outline needs three corners."));
-    else if (ring) this.edits.changePlace(row, { outline: ring.toSpliced(Number(vertex), 1) }, t("outline"));
+    else if (ring) this.edits.change("Places", [row], { outline: ring.toSpliced(Number(vertex), 1) }, t("outline"));
   }
 }

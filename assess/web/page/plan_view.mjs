@@ -15,16 +15,13 @@ import { Scene } from "./plan_scene.mjs";
 import { SelectTool } from "./plan_select.mjs";
 import { WIDE, WITH_WIDTH, toolColumn, toolbar, viewTools } from "./plan_toolbar.mjs";
 import { t, tn } from "./texts.mjs";
-import { html, render } from "./vendor/lit-html.mjs";
+import { html, nothing, render } from "./vendor/lit-html.mjs";
 
 const SWIPE_PX = 30;
 const EDITED_FROM = matchMedia("(min-width: 900px)");
 const TABS = [["selected", () => t("Selected")], ["pieces", () => t("Pieces")], ["add", () => t("Add")], ["routes", () => t("Routes")], ["picture", () => t("Picture")]];
 
-export function createView(root, store) {
-  const view = new PlanView(root, store);
-  return { show: () => view.show(), hide: () => view.hide() };
-}
+export const createView = (root, store) => new PlanView(root, store);
 
 class PlanView {
   #tab = "pieces";
@@ -76,8 +73,8 @@ class PlanView {
     const { model, store } = this;
     model.addEventListener("floor", () => this.#onFloor());
     model.addEventListener("plan", () => this.#draw());
-    model.addEventListener("classes", () => this.#drawClasses());
-    model.addEventListener("routes", () => this.#drawRoutes());
+    model.addEventListener("classes", () => this.#redraw("pieces", () => !model.plan || this.select.isDragging || this.scene.pieces.draw()));
+    model.addEventListener("routes", () => this.#redraw("routes", () => this.scene.drawRoutes()));
     store.addEventListener("selection", ({ detail }) => this.#selected(detail.source));
     store.addEventListener("history", ({ detail }) => this.#showChange(detail));
     this.viewport.addEventListener("view", () => this.select.showHandles());
@@ -98,10 +95,12 @@ class PlanView {
 
   #drawFrame() {
     const text = this.#explain();
+    const { pieces, floor } = this.model;
+    const count = tn("{n:,} piece on floor {floor}.", "{n:,} pieces on floor {floor}.", pieces.size, { floor });
     for (const [key, one] of Object.entries(this.sections)) one.node.hidden = key !== this.#tab;
     render(html`${toolbar(this)}<div class="plan-main">${toolColumn(this)}
       <div class="plan-drawing">${this.svg}${this.bar}${this.line}<div class="plan-empty" ?hidden=${!text}>${text}</div>
-        <p class="unseen" id="plan-about">${this.#about()}</p>${this.status}${viewTools(this)}</div>
+        <p class="unseen" id="plan-about">${count} ${t("Tab goes through them, arrow keys move them; all keys are in the help.")}</p>${this.status}${viewTools(this)}</div>
       <aside class=${this.#isRaised ? "plan-panel raised" : "plan-panel"} aria-label=${t("Lists of the plan")} data-tab=${this.#tab}>${this.#tabs()}
         <div class="plan-body" id="plan-panel" role="tabpanel" tabindex="0">${Object.values(this.sections).map((one) => one.node)}</div>
         <div class="plan-legend">${this.#legend()}</div></aside></div>`, this.root);
@@ -115,30 +114,23 @@ class PlanView {
     return isBlank && this.canEdit() ? t("Nothing is on this floor yet. Drag a type from the list Add, or add a picture of the floor.") : "";
   }
 
-  #about() {
-    const { pieces, floor } = this.model;
-    const count = tn("{n:,} piece on floor {floor}.", "{n:,} pieces on floor {floor}.", pieces.size, { floor });
-    return `${count} ${t("Tab goes through them, arrow keys move them; all keys are in the help.")}`;
-  }
-
   #legend() {
-    const states = this.model.routes && this.model.segments.size ? { ...stateWords(), standing: t("blocked as it stands") } : {};
+    const states = Object.entries({ ...stateWords(), standing: t("blocked as it stands") });
+    const list = html`<ul class="key-states">${states.map(([key, word]) => html`<li class="state-${key.replace("_", "-")}">
+      <span class="state-dot" aria-hidden="true">${STATES[key] ?? STATES.blocked}</span>${word}</li>`)}</ul>`;
     return html`<p><span class="key-breadth"></span>${t("A piece topples in the direction of its thick sides.")} ⚓ ${t("anchored")}</p>
-      <ul class="key-states">${Object.entries(states).map(([key, word]) => html`<li class="state-${key.replace("_", "-")}">
-        <span class="state-dot" aria-hidden="true">${STATES[key] ?? STATES.blocked}</span>${word}</li>`)}</ul>`;
+      ${this.model.routes && this.model.segments.size ? list : nothing}`;
   }
 
   #tabs() {
-    const raise = ({ changedTouches: [{ clientY }] }) => Math.abs(clientY - this.#swipe) > SWIPE_PX && this.#raise(clientY < this.#swipe);
+    const swipe = ({ changedTouches: [{ clientY }] }) => {
+      if (Math.abs(clientY - this.#swipe) > SWIPE_PX) this.#isRaised = clientY < this.#swipe;
+      this.#drawFrame();
+    };
     const shown = TABS.filter(([key]) => this.canEdit() || key !== "add");
     return html`<div class="plan-tabs" role="tablist" aria-label=${t("Lists of the plan")} @keydown=${(event) => this.#tabKey(event, shown)}
-      @touchstart=${({ touches }) => (this.#swipe = touches[0].clientY)} @touchend=${raise}>${shown.map(([key, label]) => html`<button type="button" role="tab"
+      @touchstart=${({ touches }) => (this.#swipe = touches[0].clientY)} @touchend=${swipe}>${shown.map(([key, label]) => html`<button type="button" role="tab"
         data-panel=${key} aria-controls="plan-panel" aria-selected=${key === this.#tab} tabindex=${key === this.#tab ? 0 : -1} @click=${() => this.#tapTab(key)}>${label()}</button>`)}</div>`;
-  }
-
-  #raise(isRaised) {
-    this.#isRaised = isRaised;
-    this.#drawFrame();
   }
 
   /** How much of the drawing the panel of a phone covers [px]. */
@@ -184,8 +176,7 @@ class PlanView {
   hide() {
     this.keys.endBurst();
     this.setTool("select");
-    this.isShown = false;
-    this.model.hide();
+    this.isShown = this.model.isShown = false;
   }
 
   setFloor = (name) => {
@@ -226,18 +217,12 @@ class PlanView {
     this.sections[this.#tab].draw();
   }
 
-  #drawClasses() {
-    if (!this.model.plan || !this.isShown) return;
-    if (!this.select.isDragging) this.scene.pieces.draw();
-    this.#drawFrame();
-    if (this.#tab === "pieces" || this.#tab === "selected") this.sections[this.#tab].draw();
-  }
-
-  #drawRoutes() {
+  /** Draw what is told anew of pieces or routes, and the list that shows it. */
+  #redraw(list, draw) {
     if (!this.isShown) return;
-    this.scene.drawRoutes();
-    if (this.#tab === "routes" || this.#tab === "selected") this.sections[this.#tab].draw();
+    draw();
     this.#drawFrame();
+    if (this.#tab === list || this.#tab === "selected") this.sections[this.#tab].draw();
   }
 
   // ---- selection
@@ -306,7 +291,7 @@ class PlanView {
     const names = rows.length === 1 ? this.model.pieces.get(rows[0]).item : tn("{n:,} piece", "{n:,} pieces", rows.length);
     const question = t("Remove {names} from the plan, or delete from the workbook? Undo brings everything back.", { names });
     const answer = await ask(question, [[t("Remove from the plan"), "off"], [t("Delete the row"), "row"], [t("Cancel"), null]]);
-    if (answer === "off") this.edits.takeOff(rows);
+    if (answer === "off") this.edits.change("Items", rows, { x: null, y: null }, t("take off the plan"));
     if (answer === "row") this.edits.deleteRows("Items", rows);
     return answer && this.svg.focus({ preventScroll: true });
   };

@@ -17,17 +17,13 @@ const SCALES = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.2
 const AS_IT_IS = { scale: 1, scenario: null, first: 0 };
 const [LEAST, GREATEST] = [SCALES[0], SCALES.at(-1)];
 
-export function createView(root, store) {
-  const view = new WhatIfView(root, store);
-  return { show: () => view.show(), hide: () => view.hide() };
-}
+export const createView = (root, store) => new WhatIfView(root, store);
 
 const button = (text, run) => html`<button type="button" @click=${run}>${text}</button>`;
 
 class WhatIfView {
   #timer = 0;
   #abort = null;
-  #asked = 0;
   #isShown = false;
   #isBusy = true;
   #answer = null;
@@ -73,7 +69,7 @@ class WhatIfView {
     const answer = this.#answer;
     const toggle = (on) => ((this.#showsAll = on), this.#draw());
     render(html`<div class="what-if-banner"><p><b>${t("What if: nothing is saved.")}</b> ${t("The workbook stays as it is until you write into it.")}</p>
-        <div class="buttons">${button(t("Reset"), () => this.#reset())}<button type="button" class="primary editing-only"
+        <div class="buttons">${button(t("Reset"), () => (this.#ticked.clear(), this.#change(AS_IT_IS)))}<button type="button" class="primary editing-only"
           ?disabled=${!answer?.anchored.length} @click=${() => this.#write()}>${t("Write into the workbook…")}</button></div></div>
       <div class="what-if-main"><section class="what-if-controls" aria-label=${t("What to change")}>
           ${this.#scaleField()}${this.#scenarioField()}${this.#firstField()}${this.#pieceList()}</section>
@@ -163,11 +159,6 @@ class WhatIfView {
     this.#askSoon();
   }
 
-  #reset() {
-    this.#ticked.clear();
-    this.#change(AS_IT_IS);
-  }
-
   #askSoon(delay = ASK_MS) {
     clearTimeout(this.#timer);
     this.#isBusy = true;
@@ -177,14 +168,12 @@ class WhatIfView {
 
   async #ask() {
     if (!this.store.book) return;
-    const asked = ++this.#asked;
     this.#abort?.abort();
     this.#abort = new AbortController();
     const anchor = [...this.#ticked].filter((row) => this.store.live.get(row)?.class).map((row) => this.#text(row, "item")).filter(Boolean);
     try {
       const { stamp } = this.store;
       const answer = await post("/api/what-if", { ...this.#asks, anchor }, this.#abort.signal);
-      if (asked !== this.#asked) return;
       this.#stamp = stamp;
       this.#answer = answer;
       this.#error = answer.error;
@@ -192,7 +181,7 @@ class WhatIfView {
       this.#isBusy = ["running", "waiting"].includes(answer.simulation.state);
       if (this.#isBusy) this.#timer = setTimeout(() => this.#ask(), AGAIN_MS);
     } catch (error) {
-      if (error.name === "AbortError" || asked !== this.#asked) return;
+      if (error.name === "AbortError") return;
       this.#error = error.message;
       this.#isBusy = false;
     }
