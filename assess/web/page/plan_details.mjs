@@ -5,9 +5,9 @@ import { fixButtons } from "./fixes.mjs";
 import { icon } from "./icons.mjs";
 import { ask } from "./messages.mjs";
 import { align, distance, distribute, readNumber, roundTo } from "./plan_geometry.mjs";
+import { TOOLS, WITH_WIDTH } from "./plan_draft.mjs";
 import { Section } from "./plan_lists.mjs";
 import { DOOR, stateCss } from "./plan_model.mjs";
-import { TOOLS, WITH_WIDTH } from "./plan_toolbar.mjs";
 import { isFilled } from "./sheet.mjs";
 import { number, t, tn } from "./texts.mjs";
 import { html, nothing } from "./vendor/lit-html.mjs";
@@ -172,7 +172,8 @@ export class Details extends Section {
     const problem = rows.length === 1 ? this.store.problemAt(sheet.name, rows[0], column.at) : null;
     const css = problem?.severity === "error" ? "error-text hint" : "warning-text hint";
     const shown = isMixed ? "" : typeof values[0] === "number" ? number(values[0]) : String(values[0]);
-    const own = { shown, isMixed, title: problem ? problem.message : column.help, isWrong: problem?.severity === "error", write: ({ target }) => this.#write(sheet.name, rows, column, target) };
+    const write = ({ target }) => this.#write(sheet.name, rows, column, target);
+    const own = { shown, isMixed, title: problem ? problem.message : column.help, isWrong: problem?.severity === "error", write };
     return html`<label class=${WIDE.has(column.field) ? "field wide" : "field"}><span class="field-name">${column.unit ? `${column.label} [${column.unit}]` : column.label}</span>
       ${column.choices.length ? this.#choices(column, own) : this.#input(column, own)}${problem ? html`<span class=${css}>${problem.message}</span>${fixButtons(this.store, problem)}` : nothing}</label>`;
   }

@@ -11,11 +11,20 @@ const STEP = 0.1; // of the cross-hair [m]
 const FINE = 0.01;
 const CROSS_PX = 14;
 export const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+export const WITH_WIDTH = ["door", "exit"];
 const LEAST_SIDE = 0.3; // of a rectangle [m]
 const WALL_PX = 24; // within which a door goes to a wall
 const SIGN_PX = 14; // within which a click means the sign of a place
 const LINE_PX = 8; // within which it means the middle of a segment
 const MISSED_PX = 40; // up to which the pointer goes before what it missed is forgotten
+
+/** The tools: names, which are those of their icons, keys, labels, and the sheets that they need. */
+export const TOOLS = [
+  ["select", "V", () => t("Select"), "Items"], ["measure", "M", () => t("Measure"), "Items"],
+  ["room", "O", () => t("Room"), "Places"], ["corridor", "C", () => t("Corridor"), "Places"],
+  ["door", "D", () => t("Door"), "Places"], ["stair", "S", () => t("Stair"), "Places"],
+  ["exit", "E", () => t("Exit"), "Places"], ["way", "W", () => t("Way"), "Routes"],
+];
 
 /** A point follows the pointer, a press and release sets it; by keys a cross-hair is moved, and Enter sets the point. */
 export class PointsTool {

@@ -1,9 +1,8 @@
 // The plan by keyboard alone: Tab goes through the pieces, arrows move them, letters turn, copy and take them off.
 
-import { ARROWS } from "./plan_draft.mjs";
+import { ARROWS, TOOLS } from "./plan_draft.mjs";
 import { roundTo } from "./plan_geometry.mjs";
 import { isPlaced } from "./plan_model.mjs";
-import { TOOLS } from "./plan_toolbar.mjs";
 import { tn, t } from "./texts.mjs";
 
 const STEP = 0.05; // metres
