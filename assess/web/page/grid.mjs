@@ -1,12 +1,11 @@
-// The table of one sheet: only the rows and columns in sight are elements. It shows and selects; typing, pointer and keys
-// are in grid_editor.mjs, grid_pointer.mjs and grid_keys.mjs.
+// The table of one sheet and what is selected in it: only the rows and columns in sight are elements. Typing, pointer and
+// keys are in grid_editor.mjs, grid_pointer.mjs and grid_keys.mjs.
 
 import { clear, el } from "./elements.mjs";
 import { cellText, cellValue, classColumn, describeCell, hasChoices, isClass, isComputed, problemText } from "./grid_cells.mjs";
 import { RowOrder } from "./grid_rows.mjs";
-import { Selection } from "./grid_selection.mjs";
 import { icon } from "./icons.mjs";
-import { cellName, isFilled } from "./sheet.mjs";
+import { cellName } from "./sheet.mjs";
 import { t } from "./texts.mjs";
 
 export const ROW_HEIGHT = 28;
@@ -26,6 +25,92 @@ const NARROW_PAGE = 600;
 const NARROW_COLUMN = 108;
 const NARROW_CLASS = 138; // without the range
 
+const isIn = ([r0, c0, r1, c1], r, c) => r >= r0 && r <= r1 && c >= c0 && c <= c1;
+const clamp = (value, count) => Math.max(0, Math.min(count - 1, value));
+
+/** From the anchor, the active cell, to the head, which Shift moves: rows of the view, columns among those shown. */
+class Selection {
+  anchor = [0, 0];
+  head = [0, 0];
+  /** Ranges that were selected before, and kept by Ctrl. */
+  others = [];
+
+  constructor(grid) {
+    this.grid = grid;
+  }
+
+  /** First row, first column, last row, last column. */
+  get range() {
+    const [[r, c], [q, d]] = [this.anchor, this.head];
+    return [Math.min(r, q), Math.min(c, d), Math.max(r, q), Math.max(c, d)];
+  }
+
+  get ranges() {
+    return [...this.others, this.range];
+  }
+
+  /** Whether whole rows are selected. */
+  get isRows() {
+    const [, c0, , c1] = this.range;
+    return c0 === 0 && c1 === this.grid.columns.length - 1;
+  }
+
+  has(r, c) {
+    return this.ranges.some((range) => isIn(range, r, c));
+  }
+
+  hasRow(r) {
+    return this.ranges.some(([r0, , r1]) => r >= r0 && r <= r1);
+  }
+
+  /** Keep it inside after rows or columns have gone. */
+  keepInside(from = this.anchor, to = this.head, keeps = false) {
+    if (!keeps) this.others = [];
+    const { order, columns } = this.grid;
+    [this.anchor, this.head] = [from, to].map(([r, c]) => [clamp(r, order?.length ?? 0), clamp(c, columns.length)]);
+  }
+
+  setRange(from, to, keeps) {
+    this.keepInside(from, to, keeps);
+    this.grid.dispatchEvent(new Event("select"));
+    this.grid.ask();
+  }
+
+  /** Select one cell, or with `extend` up to it. */
+  set(cell, extend = false) {
+    this.setRange(extend ? this.anchor : cell, cell, extend);
+  }
+
+  move(down, right, extend = false) {
+    const [r, c] = extend ? this.head : this.anchor;
+    this.set([r + down, c + right], extend);
+  }
+
+  /** To the edge of what is filled, as Ctrl and an arrow do in a spreadsheet. */
+  jump(down, right, extend = false) {
+    let [r, c] = extend ? this.head : this.anchor;
+    const { order, columns } = this.grid;
+    const isIndex = (at, { length }) => at >= 0 && at < length;
+    const isNext = () => isIndex(r + down, order) && isIndex(c + right, columns);
+    const has = (q, d) => this.grid.text(q, d) !== "";
+    const step = () => ((r += down), (c += right));
+    const runs = isNext() && has(r, c) && has(r + down, c + right);
+    if (isNext()) step();
+    if (runs) while (isNext() && has(r + down, c + right)) step();
+    else while (isNext() && !has(r, c)) step();
+    this.set([r, c], extend);
+  }
+
+  rows() {
+    const [r0, , r1] = this.range;
+    this.setRange([r0, 0], [r1, this.grid.columns.length - 1]);
+  }
+
+  columns() {
+    const [, c0, , c1] = this.range;
+    this.setRange([0, c0], [this.grid.order.length - 1, c1]);
+  }
+}
 export class Grid extends EventTarget {
   canEdit = true;
   /** What the find bar looks for, in small letters. */
@@ -34,8 +119,8 @@ export class Grid extends EventTarget {
   fillTarget = null;
   #rows = [];
   #asked = false;
-  #orders = new Map();
-  #places = new Map();
+  /** By sheet: its order, and where it was left. */
+  #kept = new Map();
 
   constructor(store) {
     super();
@@ -48,11 +133,7 @@ export class Grid extends EventTarget {
     this.handle = el("div", { class: "grid-handle", title: t("Drag to fill") });
     this.frame = el("div", { class: "grid-frame", "aria-hidden": "true" });
     this.box = el("div", { class: "grid-box" }, this.groups, this.table, this.frame, this.handle);
-    this.selection = new Selection({
-      rows: () => this.order?.length ?? 0,
-      columns: () => this.columns.length,
-      isFilled: (r, c) => isFilled(cellText(store, this.sheet, this.order.row(r), this.columns[c])),
-    }, () => this.#select());
+    this.selection = new Selection(this);
     this.box.addEventListener("scroll", () => this.ask(), { passive: true });
     new ResizeObserver(() => (this.layOut(), this.ask())).observe(this.box);
   }
@@ -61,15 +142,18 @@ export class Grid extends EventTarget {
 
   /** Show another sheet, where it was left. */
   open(sheet) {
-    if (this.sheet) this.#places.set(this.sheet.name, { top: this.box.scrollTop, left: this.box.scrollLeft, anchor: this.selection.anchor, head: this.selection.head });
+    const { box, selection } = this;
+    if (this.sheet) {
+      const { anchor, head } = selection;
+      Object.assign(this.#kept.get(this.sheet.name), { top: box.scrollTop, left: box.scrollLeft, anchor, head });
+    }
     this.sheet = sheet;
-    const kept = this.#orders.get(sheet.name);
-    this.order = kept?.sheet === sheet ? kept : new RowOrder(this.store, sheet, kept);
-    this.#orders.set(sheet.name, this.order);
+    const kept = this.#kept.get(sheet.name) ?? { top: 0, left: 0, anchor: [0, 0], head: [0, 0] };
+    this.order = kept.order?.sheet === sheet ? kept.order : new RowOrder(this.store, sheet, kept.order);
+    this.#kept.set(sheet.name, { ...kept, order: this.order });
     this.refreshColumns();
-    const place = this.#places.get(sheet.name) ?? { top: 0, left: 0, anchor: [0, 0], head: [0, 0] };
-    this.selection.setRange(place.anchor, place.head);
-    this.box.scrollTo(place.left, place.top);
+    selection.setRange(kept.anchor, kept.head);
+    box.scrollTo(kept.left, kept.top);
     this.table.setAttribute("aria-label", sheet.title);
     this.draw();
   }
@@ -77,8 +161,7 @@ export class Grid extends EventTarget {
   /** Forget where sheets were left, and their order: another workbook is open. */
   forget() {
     this.sheet = null;
-    this.#orders.clear();
-    this.#places.clear();
+    this.#kept.clear();
   }
 
   /** Build the columns anew: after another sheet. */
@@ -169,19 +252,6 @@ export class Grid extends EventTarget {
     if (isOther && this.head.childElementCount) this.#drawHead();
   }
 
-  #drawGroups() {
-    const corner = el("div", { class: "grid-groups-corner" });
-    corner.style.width = `${this.frozenWidth}px`;
-    clear(this.groups).append(corner, ...this.bands.map(({ group, heading, x, px, isFolded }) => {
-      const button = el("button", { type: "button", class: "grid-group", "aria-expanded": String(!isFolded), dataset: { group }, on: { click: () => this.fold(group) } }, icon(isFolded ? "right" : "down"), heading);
-      button.style.left = `${x}px`;
-      button.style.width = `${px}px`;
-      return button;
-    }));
-    this.groups.hidden = this.bands.length === 0;
-    this.groups.style.width = `${this.width}px`;
-  }
-
   get height() {
     return HEAD_HEIGHT + this.order.length * ROW_HEIGHT;
   }
@@ -198,31 +268,33 @@ export class Grid extends EventTarget {
     });
   }
 
-  #place(node, column) {
-    node.style.width = `${column.px}px`;
-    node.style.left = `${column.x}px`;
-    node.classList.toggle("frozen", column.isFrozen);
-  }
-
   #drawHead() {
-    this.#drawGroups();
-    const corner = el("div", { class: "grid-cell grid-number frozen", role: "columnheader", "aria-colindex": 1, "aria-label": t("Row") });
-    corner.hidden = this.isNarrow;
-    corner.style.width = `${this.numbersWidth}px`;
-    clear(this.head).append(corner, ...this.columns.map((column, c) => this.#headCell(column, c)));
-    this.head.style.width = `${this.width}px`;
+    const corner = el("div", { class: "grid-groups-corner", style: { width: `${this.frozenWidth}px` } });
+    clear(this.groups).append(corner, ...this.bands.map(({ group, heading, x, px, isFolded }) => el("button", {
+      type: "button", class: "grid-group", "aria-expanded": String(!isFolded), dataset: { group },
+      style: { left: `${x}px`, width: `${px}px` }, on: { click: () => this.fold(group) },
+    }, icon(isFolded ? "right" : "down"), heading)));
+    this.groups.hidden = this.bands.length === 0;
+    const number = el("div", {
+      class: "grid-cell grid-number frozen", role: "columnheader", "aria-colindex": 1, "aria-label": t("Row"),
+      hidden: this.isNarrow, style: { width: `${this.numbersWidth}px` },
+    });
+    clear(this.head).append(number, ...this.columns.map((column, c) => this.#headCell(column, c)));
+    this.head.style.width = this.groups.style.width = `${this.width}px`;
   }
 
-  #headCell(column, c) {
-    const rule = this.order.sort?.column.label === column.label ? (this.order.sort.down ? "descending" : "ascending") : null;
-    const label = el("span", { class: "grid-label" }, column.label, column.unit ? el("span", { class: "grid-unit", text: ` [${column.unit}]` }) : null);
-    const menu = el("button", { type: "button", class: "grid-menu-button", tabindex: "-1", "aria-label": t("Sort and filter {column}", { column: column.label }), }, icon(rule === "ascending" ? "up" : "down"));
-    menu.classList.toggle("used", Boolean(rule) || this.order.filters.has(column.label));
-    const edge = el("div", { class: "grid-edge", "aria-hidden": "true" });
-    const cell = el("div", { class: "grid-cell", role: "columnheader", title: [`${column.label}${column.unit ? ` [${column.unit}]` : ""}`, column.help].filter(Boolean).join("\n"), "aria-colindex": c + 2, "aria-sort": rule, dataset: { column: c, label: column.label } }, label, menu, edge);
-    if (column.required) cell.classList.add("required");
-    this.#place(cell, column);
-    return cell;
+  #headCell({ label, unit, help, required, isFrozen, x, px }, c) {
+    const { sort, filters } = this.order;
+    const rule = sort?.column.label === label ? (sort.down ? "descending" : "ascending") : null;
+    const inUnit = unit ? ` [${unit}]` : "";
+    return el("div", {
+      class: `grid-cell${required ? " required" : ""}${isFrozen ? " frozen" : ""}`, role: "columnheader",
+      title: [label + inUnit, help].filter(Boolean).join("\n"), "aria-colindex": c + 2, "aria-sort": rule,
+      dataset: { column: c, label }, style: { left: `${x}px`, width: `${px}px` },
+    }, el("span", { class: "grid-label" }, label, unit && el("span", { class: "grid-unit", text: inUnit })), el("button", {
+      type: "button", class: `grid-menu-button${rule || filters.has(label) ? " used" : ""}`, tabindex: "-1",
+      "aria-label": t("Sort and filter {column}", { column: label }),
+    }, icon(rule === "ascending" ? "up" : "down")), el("div", { class: "grid-edge", "aria-hidden": "true" }));
   }
 
   /** Rows and columns in sight, with a margin: first and one past the last. */
@@ -242,7 +314,7 @@ export class Grid extends EventTarget {
     const { first, last, columns } = this.#window();
     this.#makeRows(last - first);
     for (let r = first; r < last; r++) this.#drawRow(this.#rows[r % this.#rows.length], r, columns, this.selection.hasRow(r));
-    for (const row of this.#rows) if (row.r < first || row.r >= last) this.#hide(row);
+    for (const row of this.#rows) if (row.r < first || row.r >= last) Object.assign(row, { r: -1 }).node.hidden = true;
     this.#drawFrame();
     this.dispatchEvent(new Event("drawn"));
   }
@@ -257,11 +329,6 @@ export class Grid extends EventTarget {
       this.table.append(node);
       return { node, number, cells: [], r: -1 };
     });
-  }
-
-  #hide(row) {
-    row.node.hidden = true;
-    row.r = -1;
   }
 
   #drawRow(row, r, columns, isSelected) {
@@ -332,25 +399,18 @@ export class Grid extends EventTarget {
 
   #drawFrame() {
     const [r0, c0, r1, c1] = this.fillTarget ?? this.selection.range;
-    const isShown = this.columns.length > 0 && this.order.length > 0;
-    this.frame.hidden = !isShown;
-    this.handle.hidden = !isShown || !this.canEdit;
-    if (!isShown) return;
+    this.frame.hidden = !this.columns.length || !this.order.length;
+    this.handle.hidden = this.frame.hidden || !this.canEdit;
+    if (this.frame.hidden) return;
     const { left, top, width, height, isFrozen } = this.rectangle(r0, c0, r1, c1);
-    const end = this.columns[c1].isFrozen;
     Object.assign(this.frame.style, { transform: `translate(${left}px, ${top}px)`, width: `${width}px`, height: `${height}px` });
     this.frame.classList.toggle("over", isFrozen);
     this.frame.classList.toggle("filling", Boolean(this.fillTarget));
     this.handle.style.transform = `translate(${left + width - 4}px, ${top + height - 4}px)`;
-    this.handle.classList.toggle("over", end);
+    this.handle.classList.toggle("over", this.columns[c1].isFrozen);
   }
 
   // ---- selection
-
-  #select() {
-    this.dispatchEvent(new Event("select"));
-    this.ask();
-  }
 
   /** The active cell: its row of the sheet, its column and its name. */
   get active() {
@@ -378,11 +438,8 @@ export class Grid extends EventTarget {
     const hidden = this.all.find((column) => column.at === at && !this.columns.includes(column));
     if (hidden) this.fold(hidden.group, false);
     const c = Math.max(0, this.columns.findIndex((column) => column.at === at));
-    let r = this.order.indexOf(row);
-    if (r < 0 && !this.order.isPlain) {
-      this.order.include(row);
-      r = this.order.indexOf(row);
-    }
+    this.order.include(row);
+    const r = this.order.indexOf(row);
     if (r < 0) return false;
     this.table.style.height = `${this.height}px`;
     this.selection.set([r, c]);

@@ -2,12 +2,15 @@
 
 import { readBlock, writeBlock } from "./clipboard.mjs";
 import { cellText, cellValue, hasChoices, isComputed, showValue } from "./grid_cells.mjs";
-import { continueSeries } from "./grid_fill.mjs";
 import { isFilled, nextName } from "./sheet.mjs";
 import { notice } from "./messages.mjs";
 import { t, tn } from "./texts.mjs";
 
 const MOST_CELLS = 400_000;
+const TRAILING = /^(.*?)(\d+)$/s;
+
+const span = (from, to) => Array.from({ length: Math.max(0, to - from + 1) }, (_, i) => from + i);
+const cellsIn = (ranges) => ranges.reduce((sum, [r0, c0, r1, c1]) => sum + (r1 - r0 + 1) * (c1 - c0 + 1), 0);
 
 export class Actions {
   /** Whether the next copy begins with the headers. */
@@ -89,47 +92,33 @@ export class Actions {
 
   /** How many cells of the selection hold anything, and sum and average of its numbers; null where that is too much. */
   summarise() {
-    const { ranges } = this;
-    if (ranges.reduce((sum, [r0, c0, r1, c1]) => sum + (r1 - r0 + 1) * (c1 - c0 + 1), 0) > MOST_CELLS) return null;
-    const found = { count: 0, numbers: 0, sum: 0 };
-    for (const [r0, c0, r1, c1] of ranges) {
-      for (let r = r0; r <= r1; r++) {
-        for (let c = c0; c <= c1; c++) {
-          const value = this.grid.value(r, c);
-          found.count += isFilled(value);
-          if (typeof value !== "number") continue;
-          found.numbers += 1;
-          found.sum += value;
-        }
-      }
-    }
-    return found;
+    const { ranges, grid } = this;
+    if (cellsIn(ranges) > MOST_CELLS) return null;
+    const values = ranges.flatMap(([r0, c0, r1, c1]) => span(r0, r1).flatMap((r) => span(c0, c1).map((c) => grid.value(r, c))));
+    const numbers = values.filter((value) => typeof value === "number");
+    return { count: values.filter(isFilled).length, numbers: numbers.length, sum: numbers.reduce((sum, n) => sum + n, 0) };
   }
 
-  /**
-   * Continue the selected cells over a larger range, as the fill handle does.
-   * @param {number[]} target the whole range, with what was selected
-   * @param {boolean} other Ctrl: copies in place of a series, a series in place of copies
-   */
+  /** Continue the selected cells over a larger range; `other` (Ctrl) copies in place of a series, or the other way round. */
   fillTo(target, other) {
     const [r0, c0, r1, c1] = this.grid.selection.range;
     const [q0, d0, q1, d1] = target;
     const made = new Map();
-    const along = (cells, ends, column) => {
-      const values = cells.map(([r, c]) => this.grid.value(r, c));
-      const copies = hasChoices(column) && !other;
-      const next = copies ? ends.list.map((_, i) => values.at(ends.back ? -1 - (i % values.length) : i % values.length))
-        : continueSeries(values, ends.list.length, { back: ends.back, other: other && !hasChoices(column) });
-      ends.list.forEach(([r, c], i) => made.set(`${r},${c}`, next[i]));
-    };
-    const span = (from, to) => Array.from({ length: Math.max(0, to - from + 1) }, (_, i) => from + i);
     const { columns } = this.grid;
-    if (q0 < r0 || q1 > r1) {
-      const list = q0 < r0 ? span(q0, r0 - 1).reverse() : span(r1 + 1, q1);
-      for (const c of span(c0, c1)) along(span(r0, r1).map((r) => [r, c]), { back: q0 < r0, list: list.map((r) => [r, c]) }, columns[c]);
+    const along = (source, list, isBack, column) => {
+      const values = source.map(([r, c]) => this.grid.value(r, c));
+      if (isBack) values.reverse();
+      const isSeries = other || !hasChoices(column);
+      const next = (isSeries && findSeries(values, other && !hasChoices(column))) || ((n) => values[(n - 1) % values.length]);
+      list.forEach(([r, c], i) => made.set(`${r},${c}`, next(i + 1)));
+    };
+    const [isUp, isLeft] = [q0 < r0, d0 < c0];
+    if (isUp || q1 > r1) {
+      const rows = isUp ? span(q0, r0 - 1).reverse() : span(r1 + 1, q1);
+      for (const c of span(c0, c1)) along(span(r0, r1).map((r) => [r, c]), rows.map((r) => [r, c]), isUp, columns[c]);
     } else {
-      const list = d0 < c0 ? span(d0, c0 - 1).reverse() : span(c1 + 1, d1);
-      for (const r of span(r0, r1)) along(span(c0, c1).map((c) => [r, c]), { back: d0 < c0, list: list.map((c) => [r, c]) }, columns[c0]);
+      const list = isLeft ? span(d0, c0 - 1).reverse() : span(c1 + 1, d1);
+      for (const r of span(r0, r1)) along(span(c0, c1).map((c) => [r, c]), list.map((c) => [r, c]), isLeft, columns[c0]);
     }
     const edits = this.#edits(target, (r, column) => made.get(`${r},${columns.indexOf(column)}`), columns.slice(d0, d1 + 1));
     this.grid.selection.setRange([q0, d0], [q1, d1]);
@@ -147,12 +136,11 @@ export class Actions {
       return false;
     }
     const columns = grid.span(c0, c1);
-    if (ranges.reduce((sum, [r0, , r1]) => sum + (r1 - r0 + 1), 0) * columns.length > MOST_CELLS) return false;
+    if (cellsIn(ranges.map(([r0, , r1]) => [r0, 1, r1, columns.length])) > MOST_CELLS) return false;
+    const value = (r, column) => (isComputed(column) ? cellText(grid.store, grid.sheet, grid.order.row(r), column) : this.#value(r, column));
     const values = withHeaders ? [columns.map(({ label, unit }) => (unit ? `${label} [${unit}]` : label))] : [];
-    for (const [r0, , r1] of ranges) {
-      for (let r = r0; r <= r1; r++) values.push(columns.map((column) => (isComputed(column) ? cellText(grid.store, grid.sheet, grid.order.row(r), column) : this.#value(r, column))));
-    }
-    writeBlock(data, values, (value, i) => showValue(value, columns[i]));
+    for (const r of ranges.flatMap(([r0, , r1]) => span(r0, r1))) values.push(columns.map((column) => value(r, column)));
+    writeBlock(data, values, (shown, i) => showValue(shown, columns[i]));
     const n = values.length * columns.length;
     this.say(tn("{n:,} cell copied", "{n:,} cells copied", n));
     return true;
@@ -164,7 +152,7 @@ export class Actions {
 
   /** Paste a block: repeated where the selection is a multiple of it, past the last row into free ones, also into folded columns. */
   paste(data) {
-    const block = readBlock(data);
+    const block = readBlock(data).map((row) => row.map((one) => (one === "" ? null : one)));
     if (!block.length || !this.canEdit) return null;
     const [r0, c0, r1, c1] = this.range();
     const { all, columns: shown } = this.grid;
@@ -174,26 +162,18 @@ export class Actions {
     const first = all.indexOf(shown[c0]);
     const columns = all.slice(first, first + (selected % width === 0 ? selected : width));
     const last = (r1 - r0 + 1) % height === 0 ? r1 : r0 + height - 1;
-    const value = (r, _, i) => {
-      const one = block[(r - r0) % height][i % width] ?? null;
-      return one === "" ? null : one;
-    };
+    const value = (r, _, i) => block[(r - r0) % height][i % width] ?? null;
     const edits = this.#edits([r0, c0, last, c1], value, columns);
-    this.#tellCut(r0, last, first + width - all.length);
+    const lost = span(r0, last).filter((r) => this.grid.order.rowOrFree(r) === null).length;
+    if (lost) notice(tn("{n:,} row does not fit into this sheet and was left out.", "{n:,} rows do not fit into this sheet and were left out.", lost), { kind: "error" });
+    const over = first + width - all.length;
+    if (over > 0) notice(tn("{n} column right of the last was left out.", "{n} columns right of the last were left out.", over), { kind: "error" });
     const done = this.edit(edits, t("paste"));
     this.grid.order.extend();
     const end = shown.indexOf(columns.findLast((column) => shown.includes(column)));
     this.grid.selection.setRange([r0, c0], [Math.min(last, this.grid.order.length - 1), end]);
     this.say(tn("{n:,} cell pasted", "{n:,} cells pasted", edits.length));
     return done;
-  }
-
-  #tellCut(r0, r1, over) {
-    const { order } = this.grid;
-    let lost = 0;
-    for (let r = r1; r >= r0 && order.rowOrFree(r) === null; r--) lost += 1;
-    if (lost) notice(tn("{n:,} row does not fit into this sheet and was left out.", "{n:,} rows do not fit into this sheet and were left out.", lost), { kind: "error" });
-    if (over > 0) notice(tn("{n} column right of the last was left out.", "{n} columns right of the last were left out.", over), { kind: "error" });
   }
 
   // ---- rows
@@ -217,7 +197,7 @@ export class Actions {
   /** The selected rows of the file from the top, as runs of first row and number of rows. */
   runs() {
     const { order } = this.grid;
-    const rows = new Set(this.ranges.flatMap(([r0, , r1]) => Array.from({ length: r1 - r0 + 1 }, (_, i) => order.row(r0 + i))));
+    const rows = new Set(this.ranges.flatMap(([r0, , r1]) => span(r0, r1).map((r) => order.row(r))));
     const runs = [];
     for (const row of [...rows].sort((a, b) => a - b)) {
       if (runs.length && row === runs.at(-1)[0] + runs.at(-1)[1]) runs.at(-1)[1] += 1;
@@ -293,3 +273,29 @@ export class Actions {
     return done;
   }
 }
+
+/** A function from 1, 2, ... to the values after the last, or null where they are to be copied. */
+function findSeries(values, other) {
+  const numbers = values.map((value) => (typeof value === "number" ? value : null));
+  if (numbers.every((value) => value !== null)) {
+    if (values.length === 1) return other ? count(numbers, 1, (n) => n) : null; // one height is copied, as in Excel
+    const step = stepOf(numbers);
+    return step === null || other ? null : count(numbers, step, (n) => n);
+  }
+  if (other) return null;
+  const parts = values.map((value) => TRAILING.exec(String(value ?? "")));
+  if (parts.some((part) => part === null || part[1] !== parts[0][1] || part[2].length > 9)) return null;
+  const ends = parts.map((part) => Number(part[2]));
+  const step = ends.length === 1 ? 1 : stepOf(ends);
+  const width = parts[0][2].startsWith("0") ? parts[0][2].length : 0;
+  if (step === null) return null;
+  return count(ends, step, (n) => (n < 0 ? null : parts[0][1] + String(n).padStart(width, "0")));
+}
+
+function stepOf(numbers) {
+  const step = numbers[1] - numbers[0];
+  const isEven = numbers.every((n, i) => i === 0 || Math.abs(n - numbers[i - 1] - step) < 1e-9 * (1 + Math.abs(step)));
+  return isEven ? step : null;
+}
+
+const count = (numbers, step, write) => (i) => write(Number((numbers.at(-1) + step * i).toPrecision(12)));

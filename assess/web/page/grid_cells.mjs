@@ -40,16 +40,11 @@ export function cellText(store, sheet, row, column) {
   return showValue(value, column);
 }
 
-/** The rank of a class from low to very high; null without one. */
-function classRank(key) {
-  const at = CLASSES.indexOf(key);
-  return at < 0 ? null : CLASSES.length - at;
-}
 
 /** What a column is sorted by. */
 export function sortKey(store, sheet, row, column) {
   const live = store.live.get(row);
-  if (isClass(column)) return live?.class ? classRank(live.class) + (live.chance ?? 0) / 2 : live?.word || null;
+  if (isClass(column)) return live?.class ? CLASSES.length - CLASSES.indexOf(live.class) + (live.chance ?? 0) / 2 : live?.word || null;
   return cellValue(store, sheet, row, column);
 }
 

@@ -12,11 +12,12 @@ export class FindBar {
   #at = -1;
   #timer = 0;
 
-  constructor(grid, actions, focus) {
-    Object.assign(this, { grid, actions, focus });
+  constructor(view) {
+    const { grid, actions } = view;
+    Object.assign(this, { view, grid, actions });
     this.input = el("input", { type: "search", "aria-label": t("Find"), placeholder: t("Find") });
     this.count = el("span", { class: "grid-find-count", role: "status" });
-    const button = (name, label, click) => el("button", { type: "button", class: "quiet", "aria-label": label, title: label, on: { click } }, icon(name));
+    const button = (name, text, click) => el("button", { type: "button", class: "quiet", "aria-label": text, title: text, on: { click } }, icon(name));
     const replace = (text, isAll) => el("button", { type: "button", text, on: { click: () => this.#replace(isAll) } });
     this.other = el("input", { type: "text", "aria-label": t("Replace with"), placeholder: t("Replace with") });
     this.replacing = el("span", { class: "grid-replace", hidden: true }, this.other, replace(t("Replace"), false), replace(t("Replace all"), true));
@@ -42,15 +43,15 @@ export class FindBar {
     this.node.hidden = true;
     this.grid.found = "";
     this.grid.ask();
-    this.focus();
+    this.view.editor.focus();
   }
 
   #key(event) {
-    const isControl = event.ctrlKey || event.metaKey;
+    const key = event.key.toLowerCase();
     if (event.key === "Escape") this.close();
     else if (event.key === "Enter" && event.target === this.input) this.step(event.shiftKey ? -1 : 1);
     else if (event.key === "Enter" && event.target === this.other) this.#replace(false);
-    else if (isControl && "fh".includes(event.key.toLowerCase())) this.open(event.key.toLowerCase() === "h");
+    else if ((event.ctrlKey || event.metaKey) && "fh".includes(key)) this.open(key === "h");
     else return;
     event.preventDefault();
     event.stopPropagation();

@@ -9,8 +9,9 @@ export class Pointer {
   #drag = null;
   #moved = 0;
 
-  constructor({ grid, editor, actions, act }) {
-    Object.assign(this, { grid, editor, actions, act });
+  constructor(view) {
+    const { grid, editor, actions } = view;
+    Object.assign(this, { view, grid, editor, actions });
     const { box } = grid;
     box.addEventListener("pointerdown", (event) => this.#down(event));
     box.addEventListener("pointermove", (event) => this.#move(event));
@@ -29,74 +30,55 @@ export class Pointer {
     const x = inBox < grid.frozenWidth ? inBox : inBox + grid.box.scrollLeft;
     const r = Math.floor((clientY - edge.top + grid.box.scrollTop - grid.headHeight) / ROW_HEIGHT);
     const at = grid.columns.findIndex((column) => x < column.x + column.px);
-    const last = grid.order.length - 1;
-    return [Math.max(0, Math.min(last, r)), at < 0 ? grid.columns.length - 1 : at];
+    return [Math.max(0, Math.min(grid.order.length - 1, r)), at < 0 ? grid.columns.length - 1 : at];
   }
 
   #down(event) {
-    const { target } = event;
+    const { target, clientX: x, pointerType } = event;
     if (event.button !== 0 || target === this.editor.input || target.closest(".grid-choices, .grid-menu-button")) return;
-    if (event.pointerType === "touch" && !target.closest(".grid-handle")) return; // a touch scrolls; its click selects
-    const kind = this.#kind(target, event);
+    if (pointerType === "touch" && !target.closest(".grid-handle")) return; // a touch scrolls; its click selects
+    const kind = this.#kind(event);
     if (!kind) return;
     event.preventDefault();
     this.editor.commit();
     this.editor.focus();
-    this.#drag = { kind, x: event.clientX, y: event.clientY, event };
+    if (kind === "list") return void this.editor.openChoices();
     this.grid.box.setPointerCapture(event.pointerId);
-    this[`_${kind}`]?.(event);
+    const isPlain = !event.shiftKey && !event.ctrlKey && !event.metaKey;
+    const moves = kind === "rows" && isPlain && this.grid.canEdit && this.#isOnRows(event);
+    this.#drag = { kind: moves ? "move" : kind, x, event };
+    const c = columnOf(target);
+    if (kind === "width") Object.assign(this.#drag, { c, from: this.grid.columns[c].px });
+    else if (kind !== "fill" && !moves) this.#select(kind, event);
   }
 
-  #kind(target, event) {
+  #kind({ target, clientX }) {
     if (target.closest(".grid-edge")) return "width";
     if (target.closest(".grid-handle")) return "fill";
     if (target.closest("[role=columnheader]")) return target.closest("[data-column]") ? "columns" : "all";
     if (target.closest("[role=rowheader]")) return "rows";
     const cell = target.closest("[role=gridcell]");
-    if (cell?.classList.contains("choices") && cell.getBoundingClientRect().right - event.clientX < ARROW) return "list";
+    if (cell?.classList.contains("choices") && cell.getBoundingClientRect().right - clientX < ARROW) return "list";
     return cell ? "cells" : null;
   }
 
-  // ---- beginnings
-
-  /** Ctrl keeps what was selected before. */
-  #keeps({ ctrlKey, metaKey, shiftKey }) {
-    const keeps = (ctrlKey || metaKey) && !shiftKey;
-    if (keeps) this.grid.selection.keep();
-    return keeps || shiftKey;
+  /** Whether whole rows are selected and the pointer is on one of them. */
+  #isOnRows(event) {
+    return this.grid.selection.isRows && this.grid.selection.hasRow(this.cellAt(event)[0]);
   }
 
-  _cells(event) {
-    this.grid.selection.set(this.cellAt(event), event.shiftKey, this.#keeps(event));
-  }
-
-  _list() {
-    this.#drag = null;
-    this.editor.openChoices();
-  }
-
-  _rows(event) {
-    const [r] = this.cellAt(event);
-    const { selection, columns } = this.grid;
-    const isPlain = !event.shiftKey && !event.ctrlKey && !event.metaKey;
-    if (isPlain && this.#drag && this.grid.canEdit && selection.isRows && selection.hasRow(r)) return void (this.#drag.kind = "move");
-    selection.setRange([event.shiftKey ? selection.anchor[0] : r, 0], [r, columns.length - 1], this.#keeps(event));
-  }
-
-  _columns(event) {
-    const c = Number(event.target.closest("[data-column]").dataset.column);
-    const { selection, order } = this.grid;
-    selection.setRange([0, event.shiftKey ? selection.anchor[1] : c], [order.length - 1, c], this.#keeps(event));
-  }
-
-  _all() {
-    this.#drag = null;
-    this.grid.selection.setRange([0, 0], [this.grid.order.length - 1, this.grid.columns.length - 1]);
-  }
-
-  _width(event) {
-    const c = Number(event.target.closest("[data-column]").dataset.column);
-    Object.assign(this.#drag, { c, from: this.grid.columns[c].px });
+  /** Select what is pointed at, up to it where it extends; Ctrl keeps what was selected before. */
+  #select(kind, event, extend = event.shiftKey) {
+    const { selection, order, columns } = this.grid;
+    const [r, c] = this.cellAt(event);
+    const [r0, c0] = extend ? selection.anchor : [r, c];
+    const [bottom, right] = [order.length - 1, columns.length - 1];
+    const keeps = (event.ctrlKey || event.metaKey) && !extend && kind !== "all";
+    if (keeps) selection.others.push(selection.range);
+    const ranges = {
+      cells: [[r0, c0], [r, c]], rows: [[r0, 0], [r, right]], columns: [[0, c0], [bottom, c]], all: [[0, 0], [bottom, right]],
+    };
+    selection.setRange(...ranges[kind], keeps || (extend && kind !== "all"));
   }
 
   // ---- while it moves
@@ -110,18 +92,10 @@ export class Pointer {
 
   #follow() {
     const { kind, event, c, from, x } = this.#drag;
-    const { selection, columns, order } = this.grid;
-    const [r, at] = this.cellAt(event);
-    if (kind === "cells") selection.set([r, at], true);
-    else if (kind === "rows") selection.setRange([selection.anchor[0], 0], [r, columns.length - 1], true);
-    else if (kind === "columns") selection.setRange([0, selection.anchor[1]], [order.length - 1, at], true);
-    else if (kind === "move") this.#showMove(r);
-    else if (kind === "width") this.#resize(c, from + event.clientX - x);
-    else if (kind === "fill") this.#showFill(r, at);
-  }
-
-  #resize(c, width) {
-    this.grid.setWidth(c, width);
+    if (kind === "width") this.grid.setWidth(c, from + event.clientX - x);
+    else if (kind === "move") this.#showMove(event);
+    else if (kind === "fill") this.#showFill(event);
+    else this.#select(kind, event, true);
   }
 
   #isOutside({ clientX, clientY }) {
@@ -148,48 +122,51 @@ export class Pointer {
     this.#moved = requestAnimationFrame(step);
   }
 
+  #showTarget(range) {
+    this.grid.fillTarget = range;
+    this.grid.ask();
+  }
+
   /** The range that the handle is dragged over: down or up, or to a side, whichever is further. */
-  #showFill(r, c) {
+  #showFill(event) {
+    const [r, c] = this.cellAt(event);
     const [r0, c0, r1, c1] = this.grid.selection.range;
     const down = r > r1 ? r - r1 : Math.min(0, r - r0);
     const right = c > c1 ? c - c1 : Math.min(0, c - c0);
     const isDown = Math.abs(down) >= Math.abs(right);
     this.#drag.target = isDown ? [Math.min(r0, r), c0, Math.max(r1, r), c1] : [r0, Math.min(c0, c), r1, Math.max(c1, c)];
-    this.grid.fillTarget = this.#drag.target;
-    this.grid.ask();
+    this.#showTarget(this.#drag.target);
   }
 
   /** Where the selected rows come to lie that are dragged by their numbers. */
-  #showMove(r) {
+  #showMove(event) {
+    const [r] = this.cellAt(event);
     const { selection, order, columns } = this.grid;
     const [r0, , r1] = selection.range;
     const to = r < r0 ? r : r > r1 ? r - (r1 - r0) : r0;
     this.#drag.to = r < r0 ? order.row(r) : r > r1 ? order.row(r) + 1 : null;
-    this.grid.fillTarget = [to, 0, to + r1 - r0, columns.length - 1];
-    this.grid.ask();
+    this.#showTarget([to, 0, to + r1 - r0, columns.length - 1]);
   }
 
   // ---- endings
 
   #up(event) {
-    const drag = this.#drag;
+    const { kind, to, target } = this.#drag ?? {};
     this.#end();
-    if (drag?.kind === "move" && !drag.to) this._rows(event);
-    else if (drag?.kind === "move") this.actions.moveRows(0, drag.to);
-    else if (drag?.kind === "fill" && drag.target) this.actions.fillTo(drag.target, event.ctrlKey || event.metaKey);
+    if (kind === "move" && !to) this.#select("rows", event);
+    else if (kind === "move") this.actions.moveRows(0, to);
+    else if (target) this.actions.fillTo(target, event.ctrlKey || event.metaKey);
   }
 
   #end() {
     this.#drag = null;
-    this.grid.fillTarget = null;
-    this.grid.ask();
+    this.#showTarget(null);
   }
 
   /** The pointer is captured by the box, so its events do not tell what is below. */
   #double({ clientX, clientY }) {
     const target = document.elementFromPoint(clientX, clientY);
-    const edge = target?.closest(".grid-edge");
-    if (edge) this.grid.fitWidth(Number(edge.closest("[data-column]").dataset.column));
+    if (target?.closest(".grid-edge")) this.grid.fitWidth(columnOf(target));
     else if (target?.closest("[role=gridcell]") && !this.editor.mode) this.editor.edit();
   }
 
@@ -197,21 +174,20 @@ export class Pointer {
   #context(event) {
     event.preventDefault();
     if (event.target === this.editor.input || this.editor.mode) return;
-    const { selection } = this.grid;
-    const [r, c] = this.cellAt(event);
-    const kind = this.#kind(event.target, event);
-    if (kind === "rows" && !(selection.isRows && selection.hasRow(r))) this._rows(event);
-    else if (kind === "columns") this._columns(event);
-    else if (!selection.has(r, c)) selection.set([r, c]);
-    this.act.context([event.clientX, event.clientY]);
+    const kind = this.#kind(event);
+    const cell = this.cellAt(event);
+    if (kind === "columns" || (kind === "rows" && !this.#isOnRows(event))) this.#select(kind, event);
+    else if (!this.grid.selection.has(...cell)) this.grid.selection.set(cell);
+    this.view.context.open([event.clientX, event.clientY]);
   }
 
   #click(event) {
-    const button = event.target.closest(".grid-menu-button");
-    if (button) this.act.menu(Number(button.closest("[data-column]").dataset.column));
+    if (event.target.closest(".grid-menu-button")) this.view.menu.open(columnOf(event.target));
     else if (event.pointerType === "touch" && event.target.closest("[role=gridcell]")) {
       this.grid.selection.set(this.cellAt(event));
       if (this.grid.canEdit) this.editor.focus();
     }
   }
 }
+
+const columnOf = (node) => Number(node.closest("[data-column]")?.dataset.column);

@@ -5,13 +5,12 @@ import { fixButtons } from "./fixes.mjs";
 import { isComputed, problemText } from "./grid_cells.mjs";
 import { CLASSES, describe } from "./classes.mjs";
 import { Actions } from "./grid_actions.mjs";
-import { ContextMenu } from "./grid_context.mjs";
 import { Editor } from "./grid_editor.mjs";
 import { FindBar } from "./grid_find.mjs";
 import { Form } from "./grid_form.mjs";
 import { Grid } from "./grid.mjs";
 import { Keys } from "./grid_keys.mjs";
-import { ColumnMenu, describeOrder } from "./grid_menu.mjs";
+import { ColumnMenu, ContextMenu, describeOrder } from "./grid_menu.mjs";
 import { Pointer } from "./grid_pointer.mjs";
 import { icon } from "./icons.mjs";
 import { ProblemsList } from "./problems_list.mjs";
@@ -22,11 +21,6 @@ const EDITED_FROM = "(min-width: 900px)";
 const KEPT = "assess-sheet";
 const FIRST = "Items";
 const SAY_MS = 150;
-
-export function createView(root, store) {
-  const view = new GridView(root, store);
-  return { show: () => view.show(), hide: () => view.hide() };
-}
 
 class GridView {
   #isShown = false;
@@ -39,17 +33,11 @@ class GridView {
     this.form = new Form(store);
     this.actions = new Actions(this.grid, store, (text) => this.say(text));
     this.editor = new Editor(this.grid, this.actions, (text) => this.say(text));
-    const focus = () => this.editor.focus();
-    this.find = new FindBar(this.grid, this.actions, focus);
-    this.menu = new ColumnMenu(this.grid, () => this.#reorder(), focus);
-    const act = {
-      find: (replaces) => this.find.open(replaces), menu: (c) => this.menu.open(c ?? this.grid.selection.anchor[1]),
-      context: (point) => this.context.open(point), reorder: () => (this.#reorder(), this.editor.focus()),
-    };
-    const parts = { grid: this.grid, editor: this.editor, actions: this.actions, store, act };
-    this.keys = new Keys(parts);
-    this.pointer = new Pointer(parts);
-    this.context = new ContextMenu(parts);
+    this.find = new FindBar(this);
+    this.menu = new ColumnMenu(this);
+    this.context = new ContextMenu(this);
+    new Keys(this);
+    new Pointer(this);
     this.#build(root);
     this.#listen();
   }
@@ -58,7 +46,7 @@ class GridView {
 
   #build(root) {
     this.tabs = el("div", { class: "sheet-tabs", role: "tablist", "aria-label": t("Sheets") });
-    this.tools = el("div", { class: "sheet-tools", role: "toolbar", "aria-label": t("Rows") }, this.#toolButtons());
+    this.tools = el("div", { class: "sheet-tools", role: "toolbar", "aria-label": t("Rows") });
     this.order = el("div", { class: "sheet-order", hidden: true });
     this.reading = el("p", { class: "sheet-reading", hidden: true, text: t("To edit, make the window at least 900 pixels wide; here the workbook can be read.") });
     this.where = el("b", { class: "sheet-cell" });
@@ -71,20 +59,17 @@ class GridView {
     this.help = el("p", { class: "unseen", id: "grid-help", text: t("Arrow keys move, typing replaces, F2 edits, Alt and Down opens the choices, Escape and then Tab leaves the table.") });
     this.live = el("div", { class: "unseen", role: "status", "aria-live": "polite" });
     this.panel = el("div", { class: "sheet-panel", role: "tabpanel", id: "sheet-panel" }, this.lacking, this.grid.box, this.form.node, this.problems.node);
+    const tool = (name, text, keys, click) => el("button", { type: "button", class: "quiet", title: keys ? `${text} (${keys})` : text, "aria-label": text, on: { click } }, icon(name), el("span", { text }));
+    const edit = (name, text, run) => tool(name, text, "", () => (run(), this.editor.focus()));
+    this.editing = [
+      edit("add-row", t("Add a row"), () => this.actions.addRow()),
+      edit("copy", t("Duplicate rows"), () => this.actions.duplicateRows()),
+    ];
+    this.tools.append(...this.editing, tool("search", t("Find"), "Ctrl+F", () => this.find.open()),
+      tool("more", t("Cells and rows"), "Shift+F10", () => this.context.open()));
     this.editor.input.setAttribute("aria-describedby", "grid-help");
     root.classList.add("sheet-view");
     root.append(el("div", { class: "sheet-bar" }, this.tabs, this.chips, this.tools, this.find.node), this.reading, this.panel, this.line, this.menu.node, this.context.node, this.help, this.live);
-  }
-
-  #toolButtons() {
-    const tool = (name, text, keys, click) => el("button", { type: "button", class: "quiet", title: keys ? `${text} (${keys})` : text, "aria-label": text, on: { click } }, icon(name), el("span", { text }));
-    const button = (name, text, keys, click) => tool(name, text, keys, () => (click(), this.editor.focus()));
-    const find = tool("search", t("Find"), "Ctrl+F", () => this.find.open());
-    this.editing = [
-      button("add-row", t("Add a row"), "", () => this.actions.addRow()),
-      button("copy", t("Duplicate rows"), "", () => this.actions.duplicateRows()),
-    ];
-    return [...this.editing, find, tool("more", t("Cells and rows"), "Shift+F10", () => this.context.open())];
   }
 
   #drawTabs() {
@@ -115,7 +100,11 @@ class GridView {
     store.addEventListener("selection", ({ detail }) => detail.source !== "grid" && (this.#waiting = { ...store.selection }));
     grid.addEventListener("select", () => this.#selected());
     this.tabs.addEventListener("keydown", (event) => this.#tabKey(event));
-    for (const kind of ["copy", "cut", "paste"]) grid.box.addEventListener(kind, (event) => this.#clipboard(kind, event));
+    for (const kind of ["copy", "cut", "paste"]) grid.box.addEventListener(kind, (event) => {
+      if (this.editor.mode || event.target !== this.editor.input) return;
+      event.preventDefault();
+      this.actions[kind](event.clipboardData);
+    });
     this.wide = matchMedia(EDITED_FROM);
     this.wide.addEventListener("change", () => this.#allowEditing());
     addEventListener("keydown", (event) => this.#globalKey(event));
@@ -127,8 +116,7 @@ class GridView {
   #allowEditing() {
     const canEdit = this.wide.matches;
     if (!canEdit) this.editor.commit();
-    this.grid.canEdit = canEdit;
-    this.form.canEdit = canEdit;
+    this.grid.canEdit = this.form.canEdit = canEdit;
     this.reading.hidden = canEdit;
     for (const button of this.editing) button.hidden = !canEdit;
     this.#draw();
@@ -136,18 +124,12 @@ class GridView {
 
   /** Ctrl+F finds and Ctrl+H replaces in the grid, wherever the focus is on this tab. */
   #globalKey(event) {
-    if (!this.#isShown || event.defaultPrevented || !(event.ctrlKey || event.metaKey) || !["f", "h"].includes(event.key.toLowerCase())) return;
+    const key = event.key.toLowerCase();
+    if (!this.#isShown || event.defaultPrevented || !(event.ctrlKey || event.metaKey) || !"fh".includes(key)) return;
     if (this.sheet?.layout === "form" || document.querySelector("dialog[open]")) return;
     event.preventDefault();
-    this.find.open(event.key.toLowerCase() === "h");
+    this.find.open(key === "h");
   }
-
-  #clipboard(kind, event) {
-    if (this.editor.mode || event.target !== this.editor.input) return;
-    event.preventDefault();
-    this.actions[kind](event.clipboardData);
-  }
-
   #tabKey(event) {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (!step) return;
@@ -181,10 +163,9 @@ class GridView {
     this.sheet = sheet;
     sessionStorage.setItem(KEPT, name);
     const isForm = sheet.layout === "form";
-    this.grid.box.hidden = isForm || !sheet.found;
+    const isGrid = sheet.found && !isForm;
     this.form.node.hidden = !isForm || !sheet.found;
-    this.tools.hidden = isForm || !sheet.found;
-    for (const one of [this.where, this.about, this.sums]) one.hidden = isForm || !sheet.found;
+    for (const one of [this.grid.box, this.tools, this.where, this.about, this.sums]) one.hidden = !isGrid;
     this.order.hidden = true;
     this.lacking.hidden = sheet.found;
     this.lacking.textContent = sheet.found ? "" : t("This workbook has no sheet {sheet}, or one without its headers.", { sheet: sheet.title });
@@ -213,7 +194,7 @@ class GridView {
     else this.grid.ask();
   }
 
-  #reorder() {
+  reorder() {
     const { active } = this.grid;
     this.grid.order.apply();
     this.grid.refreshColumns();
@@ -228,14 +209,12 @@ class GridView {
     const text = this.sheet.layout === "form" ? "" : describeOrder(this.grid.order);
     this.order.hidden = text === "";
     const all = () => {
-      this.grid.order.sort = null;
-      this.grid.order.filters.clear();
-      this.grid.order.only.clear();
-      this.#reorder();
+      Object.assign(this.grid.order, { sort: null, filters: new Map(), only: new Set() });
+      this.reorder();
       this.editor.focus();
     };
     render(html`<span role="status">${text}</span>
-      <button type="button" class="quiet" @click=${() => this.#reorder()}>${t("Sort and filter again")}</button>
+      <button type="button" class="quiet" @click=${() => this.reorder()}>${t("Sort and filter again")}</button>
       <button type="button" class="quiet" @click=${all}>${t("Show all")}</button>`, this.order);
   }
 
@@ -250,7 +229,7 @@ class GridView {
     const chip = (key, css, label, text) => {
       const click = () => {
         if (!only.delete(key)) only.add(key);
-        this.#reorder();
+        this.reorder();
         this.#drawChips();
       };
       return html`<button type="button" class="sheet-chip ${css}" aria-pressed=${only.has(key)} title=${label} aria-label=${label} data-only=${key} @click=${click}>${text}</button>`;
@@ -268,21 +247,18 @@ class GridView {
   #selected() {
     const { active, order, selection, sheet } = this.grid;
     if (!active) return;
-    clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => (this.say([this.#describe(active), this.#drawSums()].filter(Boolean).join(", "))), SAY_MS);
+    const say = () => {
+      const problem = this.store.problemAt(sheet.name, active.row, active.column.at);
+      const cell = [active.name, active.column.label, this.grid.text(active.r, active.c) || t("blank")];
+      const more = [isComputed(active.column) && t("computed"), problem && problemText(problem), this.#drawSums()];
+      this.say([...cell, ...more].filter(Boolean).join(", "));
+    };
+    this.#timer = setTimeout(say, SAY_MS);
     const { quiet } = this.store;
     if (quiet && (quiet[0] !== sheet.name || quiet[1] !== active.row)) this.store.hush(null);
     this.#drawLine();
     const rows = selection.ranges.flatMap(([r0, , r1]) => Array.from({ length: r1 - r0 + 1 }, (_, i) => order.row(r0 + i)));
     this.store.select({ sheet: sheet.name, row: active.row, at: active.column.at ?? 0, rows }, "grid");
-  }
-
-  #describe({ r, c, row, column, name }) {
-    const problem = this.store.problemAt(this.sheet.name, row, column.at);
-    const parts = [name, column.label, this.grid.text(r, c) || t("blank")];
-    if (isComputed(column)) parts.push(t("computed"));
-    if (problem) parts.push(problemText(problem));
-    return parts.join(", ");
   }
 
   /** Show and return count, sum and average of what is selected, where it is more than one cell. */
@@ -339,10 +315,8 @@ class GridView {
   #showChange(cells) {
     if (cells.length === 0) return;
     const [sheet, row, at] = cells[0];
-    if (this.sheet?.name === sheet && this.sheet.layout !== "form") {
-      const active = this.grid.active?.row;
-      if (cells.some(([name, one]) => name === sheet && one === active)) return;
-    }
+    const active = this.sheet?.name === sheet && this.sheet.layout !== "form" ? this.grid.active?.row : null;
+    if (cells.some(([name, one]) => name === sheet && one === active)) return;
     this.#waiting = { sheet, row, at, takesFocus: true };
     this.#goToWaiting();
   }
@@ -362,3 +336,5 @@ class GridView {
     this.#isShown = false;
   }
 }
+
+export const createView = (root, store) => new GridView(root, store);

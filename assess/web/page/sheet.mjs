@@ -1,18 +1,10 @@
 // One sheet of the workbook as the page holds it: its columns and the values of its rows.
 
 /** The letters of a column counted from 0: 0 is A, 26 is AA. */
-export function columnLetters(at) {
-  let letters = "";
-  for (let rest = at + 1; rest > 0; rest = Math.floor((rest - 1) / 26)) {
-    letters = String.fromCharCode(65 + ((rest - 1) % 26)) + letters;
-  }
-  return letters;
-}
+const columnLetters = (at) => (at < 26 ? "" : columnLetters(Math.floor(at / 26) - 1)) + String.fromCharCode(65 + (at % 26));
 
 /** A cell as messages call it, with the title of the sheet: Items!H14. */
-export function cellName(sheet, row, at) {
-  return `${sheet?.title ?? "?"}!${columnLetters(at)}${row}`;
-}
+export const cellName = (sheet, row, at) => `${sheet?.title ?? "?"}!${columnLetters(at)}${row}`;
 
 /** Where a row comes to lie after a shift `[at, count, to]` of `rows` in a CHANGE of docs/page.md; null where it is deleted. */
 export function shiftRow(row, [at, count, to]) {
@@ -20,7 +12,8 @@ export function shiftRow(row, [at, count, to]) {
   const [first, end, isUp] = [Math.min(at, to), Math.max(at + count, to), to < at];
   if (row < first || row >= end) return row;
   const isMoved = row >= at && row < at + count;
-  return isMoved === isUp ? row - (isMoved ? end - first - count : count) : row + (isMoved ? end - first - count : count);
+  const rest = isMoved ? end - first - count : count;
+  return isMoved === isUp ? row - rest : row + rest;
 }
 
 /** Whether a value fills its cell. */
@@ -32,7 +25,8 @@ export class Sheet {
   #last = null;
   /** How often a value was set, for what is worked out from all of them. */
   revision = 0;
-  #columns = new Map();
+  /** Those that Excel computes. */
+  #live = new Set();
   #fields = new Map();
 
   /** @param {object} data a sheet of `GET /api/book` */
@@ -42,7 +36,7 @@ export class Sheet {
       headerRow: data.header_row ?? 1, capacity: data.capacity ?? 0, frozen: data.frozen ?? 1, columns: data.columns ?? [],
     });
     for (const column of this.columns) {
-      if (this.layout === "table") this.#columns.set(column.at, column);
+      if (this.layout === "table" && column.kind === "live") this.#live.add(column.at);
       if (column.field) this.#fields.set(column.field, column);
     }
     for (const [row, cells] of data.rows ?? []) this.#rows.set(row, cells);
@@ -84,8 +78,7 @@ export class Sheet {
 
   /** Have rows come to lie elsewhere, in this copy only; `move` tells where, null for those that are deleted. */
   shift(move) {
-    const rows = [...this.#rows].map(([row, cells]) => [move(row), cells]);
-    this.#rows = new Map(rows.filter(([row]) => row !== null));
+    this.#rows = new Map([...this.#rows].map(([row, cells]) => [move(row), cells]).filter(([row]) => row !== null));
     this.#numbers = this.#last = null;
     this.revision += 1;
   }
@@ -95,15 +88,10 @@ export class Sheet {
     return this.#fields.get(field);
   }
 
-  /** The column at a place; of a form, the line in a row. */
-  columnAt(at, row) {
-    return this.layout === "form" ? this.columns.find((line) => line.row === row) : this.#columns.get(at);
-  }
-
   /** Whether somebody filled a cell of the row; columns that Excel computes do not count. */
   isUsed(row) {
     const cells = this.#rows.get(row);
-    return cells !== undefined && cells.some((value, at) => isFilled(value) && this.#columns.get(at)?.kind !== "live");
+    return cells !== undefined && cells.some((value, at) => isFilled(value) && !this.#live.has(at));
   }
 
   /** The row below the last that is used; where the sheet ends there, the first that is blank, else null. */
@@ -118,9 +106,8 @@ export class Sheet {
   /** The different texts of a column, in the order of the rows. */
   names(field) {
     const column = this.column(field);
-    if (!column) return [];
-    const all = this.rowNumbers.map((row) => this.value(row, column.at)).filter(isFilled).map(String);
-    return [...new Set(all)];
+    const values = column ? this.rowNumbers.map((row) => this.value(row, column.at)).filter(isFilled) : [];
+    return [...new Set(values.map(String))];
   }
 }
 
