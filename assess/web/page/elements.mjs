@@ -4,26 +4,18 @@ const SVG = "http://www.w3.org/2000/svg";
 const ATTRIBUTES = new Set(["list", "form", "role", "for", "type", "width", "height"]);
 
 /**
- * An element with properties and children.
- * @param {string} tag
- * @param {object} [props] class, text, dataset {name: value}, style {property: value}, on {event: listener}; all others are
- *   properties where the element has them, else attributes; null, undefined and (for attributes) false leave them out
- * @param {...(Node|string|number|null|false|Array)} children
+ * An element with children, and props: class, text, dataset {name: value}, style {property: value}, on {event: listener}; all
+ * others are properties where it has them, else attributes; null, undefined and (for attributes) false leave them out.
  */
-export function el(tag, props, ...children) {
-  return fillIn(document.createElement(tag), props, children, false);
-}
+export const el = (tag, props, ...children) => fillIn(document.createElement(tag), props, children, false);
 
 /** The same for SVG: every property is an attribute. */
-export function svg(tag, props, ...children) {
-  return fillIn(document.createElementNS(SVG, tag), props, children, true);
-}
+export const svg = (tag, props, ...children) => fillIn(document.createElementNS(SVG, tag), props, children, true);
 
 function fillIn(node, props, children, isSvg) {
-  for (const [name, value] of Object.entries(props ?? {})) {
-    if (value !== null && value !== undefined) setOne(node, name, value, isSvg);
-  }
-  append(node, children);
+  const isGiven = (value) => value !== null && value !== undefined;
+  for (const [name, value] of Object.entries(props ?? {})) if (isGiven(value)) setOne(node, name, value, isSvg);
+  node.append(...children.flat(Infinity).filter((child) => isGiven(child) && child !== false));
   return node;
 }
 
@@ -36,13 +28,6 @@ function setOne(node, name, value, isSvg) {
   else if (!isSvg && name in node && !ATTRIBUTES.has(name)) node[name] = value;
   else if (value === false && !name.startsWith("aria-")) node.removeAttribute(name);
   else node.setAttribute(name, value === true && !name.startsWith("aria-") ? "" : value);
-}
-
-function append(node, children) {
-  for (const child of children.flat(Infinity)) {
-    if (child === null || child === undefined || child === false) continue;
-    node.append(child instanceof Node ? child : String(child));
-  }
 }
 
 /** Take all children out. */

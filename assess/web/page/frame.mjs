@@ -3,10 +3,8 @@
 import { countBadges } from "./classes.mjs";
 import { choose, clear, el, labelled } from "./elements.mjs";
 import { icon } from "./icons.mjs";
-import { jobs } from "./job.mjs";
-import { imports } from "./import_job.mjs";
-import { acceptDrops } from "./open_file.mjs";
-import { showFiles } from "./files_view.mjs";
+import { imports, jobs } from "./job.mjs";
+import { acceptDrops, showFiles } from "./open_file.mjs";
 import { notice } from "./messages.mjs";
 import { Tabs } from "./tabs.mjs";
 import { language, languages, loadTexts, t, tn } from "./texts.mjs";
@@ -18,7 +16,7 @@ import { Watch, whenSent } from "./watch.mjs";
 const OWN_UNDO = `textarea, [contenteditable], dialog, input:not(${["checkbox", "radio", "range", "button", "submit", "reset", "file", "color"].map((one) => `[type="${one}"]`).join()})`;
 
 /** The save state in words, and whether something has to be done about it. */
-export function saveState(store, isGone = false) {
+function saveState(store, isGone) {
   const { book, state } = store;
   if (!book) return ["", false];
   if (isGone) return [t("Not connected: changes are kept in this page"), true];
@@ -39,15 +37,22 @@ class Frame {
     this.tabs = new Tabs(store);
     this.watch = new Watch(store);
     const notices = el("div", { id: "notices", role: "region", "aria-label": t("Notices") });
-    document.body.append(this.#skip(), this.#header(), this.tabs.main, notices);
+    const skip = (event) => (event.preventDefault(), this.tabs.main.focus());
+    document.body.append(el("a", { class: "skip", href: "#view", text: t("Skip to the content"), on: { click: skip } }), this.#header(), this.tabs.main, notices);
     store.addEventListener("book", () => this.#showBook());
     store.addEventListener("state", () => this.#showState());
     store.addEventListener("live", () => this.#showCounts());
     this.watch.addEventListener("connection", () => this.#showState());
     addEventListener("keydown", (event) => this.#onKey(event));
-    addEventListener("beforeunload", (event) => this.#onLeaving(event));
+    addEventListener("beforeunload", (event) => {
+      const { book, state, waiting } = store;
+      const isLost = waiting || (book && state.unsaved && (state.save_error || state.changed_outside || book.mode === "held"));
+      if (isLost && !this.#isReloading) event.preventDefault();
+    });
     this.watch.addEventListener("job", (event) => jobs.compare(event.detail));
-    imports.addEventListener("change", () => this.#showImported());
+    imports.addEventListener("change", () => {
+      this.#parts.imported.hidden = !imports.opened || imports.opened.book !== store.state.server;
+    });
     acceptDrops(store);
   }
 
@@ -59,17 +64,14 @@ class Frame {
     this.watch.start();
   }
 
-  #skip() {
-    const onClick = (event) => (event.preventDefault(), this.tabs.main.focus());
-    return el("a", { class: "skip", href: "#view", text: t("Skip to the content"), on: { click: onClick } });
-  }
-
   /** One line, whatever it tells: what is too long is cut off and stands in the title. */
   #header() {
     const p = this.#parts;
     p.name = el("h1", { text: "assess" });
     p.state = el("div", { class: "save-state", role: "status" });
-    p.counts = this.#countsLine();
+    p.badges = el("ul", { class: "counts", "aria-label": t("Pieces by class") });
+    p.progress = el("progress", { class: "simulating", max: 1, hidden: true });
+    p.counts = el("div", { class: "counts-line" }, p.progress, p.badges);
     const button = (label, name, run, more = {}) =>
       el("button", { type: "button", class: "quiet square", "aria-label": label, title: label, on: { click: run }, ...more }, icon(name));
     p.undo = button(t("Undo"), "undo", () => this.#store.undo(), { class: "quiet square editing-only" });
@@ -93,14 +95,6 @@ class Frame {
     p.items = el("div", { class: "items", on: { click: () => p.menu.hidePopover() } }, p.open, p.imported);
     p.menu = el("div", { id: "menu", popover: "auto" }, p.items, this.#languageSwitch(), labelled(t("Colours"), themeSwitch()));
     return p.menu;
-  }
-
-  /** The pieces by class, and how far the simulation is. */
-  #countsLine() {
-    const p = this.#parts;
-    p.badges = el("ul", { class: "counts" });
-    p.progress = el("progress", { class: "simulating", max: 1, hidden: true });
-    return el("div", { class: "counts-line" }, p.progress, p.badges);
   }
 
   #languageSwitch() {
@@ -128,34 +122,21 @@ class Frame {
   #onKey(event) {
     if (event.defaultPrevented || !(event.ctrlKey || event.metaKey) || event.altKey || !this.#store.book) return;
     if (event.target.closest?.(OWN_UNDO)) return;
-    const key = event.key.toLowerCase();
-    const run = key === "z" ? (event.shiftKey ? "redo" : "undo") : key === "y" ? "redo" : "";
+    const run = { z: event.shiftKey ? "redo" : "undo", y: "redo" }[event.key.toLowerCase()];
     if (!run) return;
     event.preventDefault();
     this.#store[run]();
   }
 
-  #onLeaving(event) {
-    const { book, state, waiting } = this.#store;
-    const isLost = waiting || (book && state.unsaved && (state.save_error || state.changed_outside || book.mode === "held"));
-    if (isLost && !this.#isReloading) event.preventDefault();
-  }
-
   #showBook() {
+    const p = this.#parts;
     const { book } = this.#store;
-    this.#parts.name.textContent = book?.name ?? "assess";
-    this.#parts.tools.hidden = !book;
-    this.#parts.counts.hidden = !book;
+    p.name.textContent = book?.name ?? "assess";
+    p.tools.hidden = p.counts.hidden = p.items.hidden = !book;
     const isHeld = book?.mode === "held"; // then this is how it is saved
-    this.#parts.downloads.textContent = isHeld ? t("Download") : t("Download a copy");
-    (isHeld ? this.#parts.tools : this.#parts.items).append(this.#parts.download);
-    this.#parts.items.hidden = !book;
+    p.downloads.textContent = isHeld ? t("Download") : t("Download a copy");
+    (isHeld ? p.tools : p.items).append(p.download);
     this.tabs.update();
-  }
-
-  #showImported() {
-    const { opened } = imports;
-    this.#parts.imported.hidden = !opened || opened.book !== this.#store.state.server;
   }
 
   #showState() {
@@ -178,7 +159,6 @@ class Frame {
     const p = this.#parts;
     const { counts, simulation, isSimulating } = this.#store;
     clear(p.badges).append(...countBadges(counts, isSimulating || simulation.state === "failed"));
-    p.badges.setAttribute("aria-label", t("Pieces by class"));
     p.progress.hidden = !isSimulating;
     p.progress.value = simulation.of ? simulation.done / simulation.of : 0;
     p.counts.title = simulationText(simulation);

@@ -3,7 +3,7 @@
 import { get } from "./api.mjs";
 import { writeList } from "./clipboard.mjs";
 import { choose, clear, el, labelled } from "./elements.mjs";
-import { imports } from "./import_job.mjs";
+import { imports } from "./job.mjs";
 import { notice } from "./messages.mjs";
 import { canLeave } from "./open_file.mjs";
 import { number, t, tn } from "./texts.mjs";

@@ -25,40 +25,27 @@ export class KeptEdits {
   }
 
   /**
-   * Compare with a book that was read from the file.
-   * @param {Function} valueOf of sheet, row, column: what the book has there
+   * Compare with a book that was read from the file, of which `valueOf(cell)` tells what it holds.
    * @returns {{groups: Array, count: number, taken: Array, isKnown: Function}} what is not in it, step by step, and of how
    *   many cells; the cells that somebody else has set; whether a value is one that a cell had while it was edited here
    */
   compare(valueOf) {
-    const chains = this.#chains();
+    const known = new Map(); // by cell: every value that it has had meanwhile, the last one last
+    for (const { cell, typed, stored, before } of this.#groups.flatMap(({ cells }) => cells)) {
+      known.set(key(...cell), [...(known.get(key(...cell)) ?? []), before, typed, stored]);
+    }
+    const isKnown = (cell, value) => (known.get(key(...cell)) ?? []).some((one) => same(one, value));
     const missing = new Set();
-    const taken = [];
-    for (const [name, { cell, known, last }] of chains) {
-      const now = valueOf(...cell);
-      if (same(now, last)) continue;
-      if (known.some((one) => same(one, now))) missing.add(name);
-      else taken.push(cell);
+    const taken = new Map();
+    for (const { cell } of this.#groups.flatMap(({ cells }) => cells)) {
+      const now = valueOf(cell);
+      if (same(now, known.get(key(...cell)).at(-1))) continue;
+      if (isKnown(cell, now)) missing.add(key(...cell));
+      else taken.set(key(...cell), cell);
     }
     const groups = this.#groups
       .map(({ label, cells }) => ({ label, cells: cells.filter(({ cell }) => missing.has(key(...cell))) }))
       .filter(({ cells }) => cells.length);
-    const isKnown = (cell, value) => chains.get(key(...cell))?.known.some((one) => same(one, value)) ?? false;
-    return { groups, count: missing.size, taken, isKnown };
-  }
-
-  /** Every value that a cell has had meanwhile, and the last. */
-  #chains() {
-    const chains = new Map();
-    for (const { cells } of this.#groups) {
-      for (const { cell, typed, stored, before } of cells) {
-        const name = key(...cell);
-        const chain = chains.get(name) ?? { cell, known: [] };
-        chain.known.push(before, typed, stored);
-        chain.last = stored;
-        chains.set(name, chain);
-      }
-    }
-    return chains;
+    return { groups, count: missing.size, taken: [...taken.values()], isKnown };
   }
 }

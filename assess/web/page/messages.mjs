@@ -1,6 +1,6 @@
 // Notices at the edge of the page, and questions that wait for an answer.
 
-import { clear, el } from "./elements.mjs";
+import { el } from "./elements.mjs";
 import { icon } from "./icons.mjs";
 import { t } from "./texts.mjs";
 
@@ -10,17 +10,10 @@ const ERROR_MS = 30000;
 const MOST = 5;
 const shown = new Map();
 
-function place() {
-  return document.getElementById("notices") ?? document.body.appendChild(el("div", { id: "notices" }));
-}
-
 /**
- * Show a notice. One with the same text, or the same key, takes the place of the earlier one.
- * @param {string} text
- * @param {{kind?: "info"|"error", actions?: Array<[string, Function]>, key?: string, lasting?: boolean, until?: string}} [options]
- *   all but `lasting` ones and errors with actions go by themselves after a while; one with `until` goes as soon as
- *   `endNotices` is called with another moment
- * @returns {{close: Function}}
+ * Show a notice: `kind` "info" or "error", `actions` [label, run]. One with the same text, or the same `key`, takes the place
+ * of the earlier one. All but `lasting` ones and errors with actions go by themselves after a while; one with `until` goes as
+ * soon as `endNotices` is called with another moment. The answer has `close`.
  */
 export function notice(text, { kind = "info", actions = [], key = text, lasting = false, until } = {}) {
   shown.get(key)?.close();
@@ -29,7 +22,7 @@ export function notice(text, { kind = "info", actions = [], key = text, lasting 
   const buttons = actions.map(([label, run]) => el("button", { type: "button", text: label, on: { click: () => (one.close(), run()) } }));
   const close = el("button", { type: "button", class: "quiet close", "aria-label": t("Close"), on: { click: one.close } }, icon("close"));
   node.append(el("p", { text }), ...buttons, close);
-  place().append(node);
+  (document.getElementById("notices") ?? document.body.appendChild(el("div", { id: "notices" }))).append(node);
   shown.set(key, one);
   if (shown.size > MOST) [...shown.values()].find((other) => other.timer)?.close();
   const isError = kind === "error";
@@ -45,12 +38,7 @@ function startTimer(one, node, time) {
   start();
 }
 
-/**
- * Ask a question and wait for one of the answers; the first is the proposed one.
- * @param {string} question
- * @param {Array<[string, *]>} choices label and value
- * @returns {Promise<*>} the value, null where the question was closed
- */
+/** Ask a question: the value of the choice, [label, value], of which the first is proposed; null where it was closed. */
 export function ask(question, choices) {
   return new Promise((resolve) => {
     let answer = null;
@@ -67,10 +55,4 @@ export function ask(question, choices) {
 /** Take the notices away that belong to another moment: what they offer would act on something else. */
 export function endNotices(moment) {
   for (const one of [...shown.values()]) if (one.until !== undefined && one.until !== moment) one.close();
-}
-
-/** Take all notices away. */
-export function clearNotices() {
-  for (const one of [...shown.values()]) one.close();
-  clear(place());
 }

@@ -2,7 +2,7 @@
 
 import { get } from "./api.mjs";
 import { CLASSES, badge, classStyle, classText, describe } from "./classes.mjs";
-import { showFiles } from "./files_view.mjs";
+import { showFiles } from "./open_file.mjs";
 import { fixButtons } from "./fixes.mjs";
 import { simulationText } from "./frame.mjs";
 import { cellName } from "./sheet.mjs";

@@ -3,16 +3,17 @@
 import { get, post, send } from "./api.mjs";
 import { el } from "./elements.mjs";
 import { icon } from "./icons.mjs";
-import { ImportCard } from "./import_card.mjs";
+import { imports } from "./job.mjs";
 import { notice } from "./messages.mjs";
 import { canLeave, chooseFile } from "./open_file.mjs";
 import { StartForm } from "./start_form.mjs";
-import { language, t } from "./texts.mjs";
+import { language, number, t } from "./texts.mjs";
 import { html, nothing, render } from "./vendor/lit-html.mjs";
 
 const EXAMPLE = "market-street.xlsx";
 const MOST_EXAMPLES = 20;
 const CONFLICT = 409;
+const SOON_S = 3;
 
 class StartView {
   #root;
@@ -21,11 +22,13 @@ class StartView {
   #fault = "";
   #form = null;
   #isBusy = false;
+  #card = el("section", { class: "choice import-card", "aria-label": t("Open a file") });
 
   constructor(root, store) {
     this.#root = root.appendChild(el("div", { class: "page-like start" }));
     this.#store = store;
-    this.card = new ImportCard(() => chooseFile(store));
+    imports.addEventListener("change", () => this.#drawCard());
+    this.#drawCard();
   }
 
   async show() {
@@ -59,12 +62,38 @@ class StartView {
             ${icon("plus")}<strong>${t("New building")}</strong><span class="muted">${t("A workbook with the floors of your building and its first pieces. Risk classes show while you type.")}</span>
           </button>
         </section>
-        ${this.card.node}
+        ${this.#card}
       </div>
       <p class="example"><a href="#example" @click=${example}>${t("Open the worked example")}</a>
         <span class="hint">${t("An office tower in San Francisco with the motions recorded on its floors in 1989. Its furniture is made up. You may change everything.")}
           ${canSave ? t("It is made as {name} in the folder {folder}.", { name: EXAMPLE, folder }) : nothing}</span></p>
       <p class="hint">${t("Nothing leaves this machine, unless the page was opened at the address of another one.")}</p>`;
+  }
+
+  /** The choice that opens a file: a workbook, or a building model, with how far its reading is and why nothing came of it. */
+  #drawCard() {
+    const { isBusy, isCancelled, current, sending, fault, drafts } = imports;
+    const hadFocus = this.#card.contains(document.activeElement);
+    const name = sending || current?.name || "";
+    const words = !isBusy ? "" : sending ? t("Sending {name}", { name }) : t("Reading {name}", { name });
+    render(html`
+      ${isBusy ? this.#reading(words) : html`<button type="button" @click=${() => chooseFile(this.#store)}>${icon("folder")}<strong>${t("Open a file")}</strong><span class="muted">${t("A workbook (.xlsx), or a building model: IFC (.ifc), COBie (.xlsx), a RoomPlan scan (.json), a Sweet Home 3D plan (.sh3d). Or drop it anywhere on this page.")}</span></button>`}
+      <p class="unseen" role="status">${words}</p>
+      <p class="fault ${isCancelled ? "" : "error-text"}" role="alert">${fault}</p>
+      ${current?.found ? html`<p><a href="#import">${t("What was taken from {name}", { name })}</a></p>` : nothing}
+      <div class="option"><input type="checkbox" id="drafts" aria-describedby="drafts-hint" .checked=${drafts} ?disabled=${isBusy} @change=${(event) => (imports.drafts = event.target.checked)}>
+        <span><label for="drafts">${t("Draft evacuation routes")}</label> <span class="hint" id="drafts-hint">${t("Of a building model: from the rooms to the exits; check them on the plan.")}</span></span></div>`, this.#card);
+    if (hadFocus && !this.#card.contains(document.activeElement)) this.#card.querySelector("button").focus();
+  }
+
+  #reading(words) {
+    const { current, sending } = imports;
+    const spent = sending ? 0 : Math.floor(current.seconds);
+    const share = !sending && current.share > 0 ? current.share : nothing;
+    return html`<div class="reading">
+      <p><span>${words}</span> <span class="muted" aria-hidden="true">${spent >= SOON_S ? t("{n} s. A large model takes up to two minutes; you may go on working.", { n: number(spent) }) : nothing}</span></p>
+      <progress max="1" value=${share} aria-label=${t("Reading the building model")}></progress>
+      <div class="buttons"><button type="button" @click=${() => imports.cancel()}>${t("Cancel")}</button></div></div>`;
   }
 
   #showForm(isShown) {

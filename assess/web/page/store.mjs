@@ -75,7 +75,7 @@ class Store extends EventTarget {
     if (book?.state?.server !== this.state.server) this.#kept = new KeptEdits();
     if (book?.state) this.state = book.state;
     this.#tell("book");
-    this.#tellState();
+    this.takeState(this.state);
     if (book) this.refreshLive();
   }
 
@@ -90,10 +90,6 @@ class Store extends EventTarget {
   /** Take the state of an answer, such as that of `POST /api/save`. */
   takeState(state) {
     this.state = state;
-    this.#tellState();
-  }
-
-  #tellState() {
     this.#kept.drop(this.state.saved_version);
     endNotices(this.#moment);
     this.#tell("state");
@@ -112,9 +108,7 @@ class Store extends EventTarget {
   // ---- edits
 
   /**
-   * Change cells: shown at once, sent in order; one call is one step of undo.
-   * @param {Array<[string, number, number, *]>} edits sheet, row, column, value (null clears)
-   * @param {string} label what was done, for the history
+   * Change cells, `[sheet, row, column, value]` (null clears): shown at once, sent in order; one call is a step of undo.
    * @returns {Promise<boolean>} false where the server refused it, which a notice explains
    */
   edit(edits, label = "") {
@@ -123,28 +117,25 @@ class Store extends EventTarget {
     const before = changed.map(([name, row, at]) => [name, row, at, this.sheet(name).value(row, at)]);
     this.#put(changed);
     endNotices(null);
+    return this.#enqueue({ edits: changed, before, label });
+  }
+
+  /** Add a change to what waits, or in place of the last where that still waits and changes the very same cells. */
+  #enqueue({ edits = [], before = [], label = "", ...request }) {
     return new Promise((resolve) => {
-      this.#queueUp({ id: newId(), edits: changed, before, label, resolve, keys: new Set(changed.map((cell) => key(...cell))) });
+      const [id, keys] = [newId(), new Set(edits.map((cell) => key(...cell)))];
+      const last = this.#queue.at(-1);
+      const isSame = last && !last.isSent && !last.path && !request.path && last.label === label &&
+        last.keys.size === keys.size && [...keys].every((one) => last.keys.has(one));
+      if (isSame) {
+        const values = new Map(edits.map((cell) => [key(...cell), cell]));
+        Object.assign(last, { id, edits: last.edits.map((cell) => values.get(key(...cell))) });
+        const earlier = last.resolve;
+        last.resolve = (done) => (earlier(done), resolve(done));
+      } else this.#queue.push({ ...request, id, edits, before, label, keys, resolve });
       this.#send();
     });
   }
-
-  /** Add a change to what waits; one of the very cells that the last waiting one changes takes its place. */
-  #queueUp(group) {
-    const last = this.#queue.at(-1);
-    const replaces = last && !last.isSent && !last.path && last.label === group.label && last.keys.size === group.keys.size &&
-      [...group.keys].every((one) => last.keys.has(one));
-    if (!replaces) {
-      this.#queue.push(group);
-      return;
-    }
-    const values = new Map(group.edits.map((cell) => [key(...cell), cell]));
-    last.id = group.id;
-    last.edits = last.edits.map((cell) => values.get(key(...cell)));
-    const earlier = last.resolve;
-    last.resolve = (done) => (earlier(done), group.resolve(done));
-  }
-
   #send() {
     if (this.#stopped) return;
     this.#sending ??= this.#sendAll().finally(() => {
@@ -161,13 +152,18 @@ class Store extends EventTarget {
       this.#tell("state");
       try {
         const { version, server } = this.state;
-        const body = { id: group.id, version, server, ...(group.path ? (group.body ?? {}) : { edits: group.edits, label: group.label }) };
+        const content = group.path ? group.body : { edits: group.edits, label: group.label };
+        const body = { id: group.id, version, server, ...content };
         const change = await post(group.path ?? "/api/edit", body);
         if (book !== this.#books) return;
         this.#queue.shift();
         this.#keep(group, change);
         await this.#accept(change);
-        if (group.path) this.#tellStep(group, change);
+        if (group.path && group.path !== "/api/rows") {
+          const { cells = [], rows = [] } = change;
+          this.#tell("history", cells.length ? cells : rows.map(([name, at]) => [name, at, 0]));
+          this.#tell("step", { isUndo: group.path === "/api/undo", cells, rows });
+        }
         group.resolve(true);
       } catch (error) {
         if (book === this.#books) await this.#handleFault(error, group);
@@ -186,12 +182,6 @@ class Store extends EventTarget {
       return { cell: [name, row, at], stored, typed: typed.has(one) ? typed.get(one) : stored, before: old };
     });
     this.#kept.add(state.version, group.label, kept);
-  }
-
-  #tellStep(group, { cells = [], rows = [] }) {
-    if (group.path === "/api/rows") return;
-    this.#tell("history", cells.length ? cells : rows.map(([name, at]) => [name, at, 0]));
-    this.#tell("step", { isUndo: group.path === "/api/undo", cells, rows });
   }
 
   async #handleFault(error, group) {
@@ -232,21 +222,15 @@ class Store extends EventTarget {
 
   #explain(error, group) {
     const refused = error.body?.refused ?? [];
-    if (refused.length === 0 && group.path) {
-      notice(error.message, { kind: "error" });
-      return;
-    }
-    if (refused.length === 0) {
-      const [name, row, at] = group.edits[0];
-      const where = cellName(this.sheet(name), row, at);
-      notice(t("Not changed: {cell}. {why}", { cell: where, why: error.message }), { kind: "error" });
-      return;
-    }
-    const lines = refused.slice(0, NAMED).map(([name, row, at, why]) => `${cellName(this.sheet(name), row, at)}: ${why}`);
-    if (refused.length > NAMED) lines.push(tn("{n} more", "{n} more", refused.length - NAMED, { n: refused.length - NAMED }));
-    notice(t("Not changed: {cell}", { cell: lines.join("; ") }), { kind: "error" });
+    const name = ([sheet, row, at]) => cellName(this.sheet(sheet), row, at);
+    let text = error.message;
+    if (refused.length) {
+      const lines = refused.slice(0, NAMED).map((cell) => `${name(cell)}: ${cell[3]}`);
+      if (refused.length > NAMED) lines.push(tn("{n} more", "{n} more", refused.length - NAMED));
+      text = t("Not changed: {cell}", { cell: lines.join("; ") });
+    } else if (!group.path) text = t("Not changed: {cell}. {why}", { cell: name(group.edits[0]), why: error.message });
+    notice(text, { kind: "error" });
   }
-
   /** Read the book again where the server has another version, and explain what of the changes that wait is lost. */
   async #resume(error) {
     const old = this.#moment;
@@ -261,45 +245,43 @@ class Store extends EventTarget {
 
   /** Read the book again, as the server has another version of it, or another server has it. */
   async readAgain() {
-    const result = await this.#reread();
-    this.#tellConflict(null, result);
+    this.#tellConflict(null, await this.#reread());
     this.#send();
   }
 
-  /**
-   * Read the book again; what waits is kept where nobody else changed its cells.
-   * @returns {Promise<{text: string, cells: Array}>} why it was read, and the cells of which changes are lost
-   */
+  /** Read the book again; what waits is kept where nobody else changed its cells. Why, and the cells that lose changes. */
   async #reread(canSend = () => true) {
     const book = await get("/api/book");
     if (book.start) throw new ApiError(404, { message: t("No workbook is open.") });
     const { book: oldBook, state: old } = this;
-    const kept = this.#kept;
-    const waiting = this.#queue;
+    const [kept, waiting] = [this.#kept, this.#queue];
     this.#queue = [];
     this.replaceBook(book);
     const isAnew = this.state.server !== old.server;
     const isOther = isAnew && (book.mode !== "disk" || book.file !== oldBook?.file);
-    const again = (isAnew && !isOther ? kept : new KeptEdits()).compare((name, row, at) => this.sheet(name)?.value(row, at));
+    const again = (isAnew && !isOther ? kept : new KeptEdits()).compare(this.#value);
     for (const group of again.groups) this.#queueAgain(group);
     const lost = waiting.filter((group) => !this.#queueWaiting(group, again, !isOther && canSend()));
     const text = isOther ? t("Another workbook was opened: {name}.", { name: book.name }) : this.#whyRead(old, isAnew, again.count);
     return { text, cells: [...again.taken, ...lost.flatMap((group) => group.edits)] };
   }
 
+  #value = ([name, row, at]) => this.sheet(name)?.value(row, at);
+
   /** Queue what the server before had taken and not saved. */
   #queueAgain({ label, cells }) {
-    const before = cells.map(({ cell: [name, row, at] }) => [name, row, at, this.sheet(name)?.value(row, at)]);
+    const before = cells.map(({ cell }) => [...cell, this.#value(cell)]);
     this.#put(cells.map(({ cell, stored }) => [...cell, stored]));
     const edits = cells.map(({ cell, typed }) => [...cell, typed]);
-    this.#queue.push({ id: newId(), edits, before, label, resolve: () => {}, keys: new Set(edits.map((cell) => key(...cell))) });
+    const keys = new Set(edits.map((cell) => key(...cell)));
+    this.#queue.push({ id: newId(), edits, before, label, resolve: () => {}, keys });
   }
 
   /** Queue what had not been answered; false where that cannot be. */
   #queueWaiting(group, again, canSend) {
-    const value = ([name, row, at]) => this.sheet(name)?.value(row, at);
-    const isDone = group.isSent && !group.path && group.edits.every((cell) => same(value(cell), cell[3]));
-    const isFree = group.before.every((cell) => same(value(cell), cell[3]) || again.isKnown(cell, value(cell)));
+    const isNow = (cell) => same(this.#value(cell), cell[3]);
+    const isDone = group.isSent && !group.path && group.edits.every(isNow);
+    const isFree = group.before.every((cell) => isNow(cell) || again.isKnown(cell, this.#value(cell)));
     const isQueued = canSend && !isDone && isFree && !(group.path && (group.isSent || group.body));
     if (isQueued) {
       group.isSent = false;
@@ -317,10 +299,7 @@ class Store extends EventTarget {
   }
 
   #tellConflict(error, { text, cells }) {
-    if (cells.length === 0) {
-      notice(text, { kind: "info", key: "again" });
-      return;
-    }
+    if (cells.length === 0) return void notice(text, { key: "again" });
     const names = cells.slice(0, NAMED).map(([name, row, at]) => (this.sheet(name) ? cellName(this.sheet(name), row, at) : name));
     const named = names.join(", ") + (cells.length > NAMED ? " …" : "");
     const why = this.state.changed_outside && error?.message ? error.message : text;
@@ -332,10 +311,9 @@ class Store extends EventTarget {
     if (change.rows?.length) this.#kept.block(change.state.version);
     const wait = new Set(this.#queue.flatMap((group) => [...group.keys]));
     this.#put((change.cells ?? []).filter((cell) => !wait.has(key(...cell))));
-    this.state = change.state;
     if (change.missing) this.book.missing = change.missing;
     const other = change.language && change.language !== this.book.language;
-    this.#tellState();
+    this.takeState(change.state);
     if (other) await this.#reread(); // titles and choices are in the language of the workbook
     else this.refreshLive();
   }
@@ -367,7 +345,7 @@ class Store extends EventTarget {
   /** Insert, delete or move rows, `{sheet, do, at, count, to}` of `POST /api/rows`, in the order of the edits. */
   changeRows(body) {
     endNotices(null);
-    return this.#enqueue("/api/rows", body);
+    return this.#enqueue({ path: "/api/rows", body });
   }
 
   undo() {
@@ -389,15 +367,7 @@ class Store extends EventTarget {
     const can = path === "/api/undo" ? this.state.can_undo : this.state.can_redo;
     if (!this.book || (!can && this.#queue.length === 0)) return Promise.resolve(false);
     endNotices(null);
-    return this.#enqueue(path);
-  }
-
-  #enqueue(path, body = {}) {
-    return new Promise((resolve) => {
-      const own = { id: newId(), path, body: path === "/api/rows" ? body : null };
-      this.#queue.push({ ...own, edits: [], before: [], label: "", resolve, keys: new Set() });
-      this.#send();
-    });
+    return this.#enqueue({ path });
   }
 
   // ---- live values
@@ -428,12 +398,9 @@ class Store extends EventTarget {
 
   #takeLive(answer) {
     if (answer.whole) this.live.clear();
-    const items = answer.items ?? {};
-    const { row: rows = [], values: columns = {}, ...named } = items;
-    rows.forEach((row, i) => {
-      const values = Object.fromEntries(Object.entries(columns).map(([at, all]) => [at, all[i]]));
-      this.live.set(row, { ...Object.fromEntries(Object.entries(named).map(([name, all]) => [name, all[i]])), values });
-    });
+    const { row: rows = [], values: columns = {}, ...named } = answer.items ?? {};
+    const ofRow = (lists, i) => Object.fromEntries(Object.entries(lists).map(([name, all]) => [name, all[i]]));
+    rows.forEach((row, i) => this.live.set(row, { ...ofRow(named, i), values: ofRow(columns, i) }));
     for (const row of answer.gone ?? []) this.live.delete(row);
     this.stamp = answer.stamp ?? null;
     this.simulation = answer.simulation ?? { state: "done", done: 0, of: 0, message: "" };
@@ -498,7 +465,7 @@ class Store extends EventTarget {
   /** @param source who selected, so that it does not follow itself */
   select(selection, source) {
     this.selection = { at: 0, rows: selection.row ? [selection.row] : [], ...selection };
-    this.dispatchEvent(new CustomEvent("selection", { detail: { source } }));
+    this.#tell("selection", { source });
   }
 
   /** Show a cell in the grid, which may not be made yet: it looks at `toReveal` then. */

@@ -2,7 +2,7 @@
 
 import { clear, el } from "./elements.mjs";
 import { icon } from "./icons.mjs";
-import { imports } from "./import_job.mjs";
+import { imports } from "./job.mjs";
 import { t } from "./texts.mjs";
 
 /** Key, which is its icon too, label and module of every tab; each module exports createView(root, store) -> {show, hide}. */
@@ -37,10 +37,7 @@ export class Tabs {
     const isImport = wanted === "import" && imports.shown;
     const tab = isImport ? IMPORT : !this.#store.book || wanted === "start" ? START : found;
     this.nav.hidden = !this.#store.book;
-    for (const link of this.nav.children) {
-      if (link.dataset.tab === tab[0]) link.setAttribute("aria-current", "page");
-      else link.removeAttribute("aria-current");
-    }
+    for (const link of this.nav.children) link.setAttribute("aria-current", link.dataset.tab === tab[0] ? "page" : "false");
     document.title = [tab[1](), this.#store.book?.name, "assess"].filter(Boolean).join(" – ");
     if (tab[0] !== this.#shown) this.#change(tab);
   }
@@ -49,25 +46,18 @@ export class Tabs {
     const [key] = tab;
     const before = this.#views.get(this.#shown);
     this.#shown = key;
-    if (before) {
-      before.view?.hide?.();
-      before.root.hidden = true;
-    }
+    before?.view?.hide?.();
+    if (before) before.root.hidden = true;
     const one = this.#views.get(key) ?? this.#add(tab);
     one.root.hidden = false;
     await one.ready;
     if (this.#shown === key) one.view?.show?.();
-    if (this.#store.book && !this.#hasAll) this.#loadOthers();
-  }
-
-  /** Load the modules of the other views, so that they can be shown while the server does not answer. */
-  #loadOthers() {
-    this.#hasAll = true;
+    if (!this.#store.book || this.#hasAll) return;
+    this.#hasAll = true; // the modules of the other views, so that they can be shown while the server does not answer
     for (const [, , load] of TABS) load().catch(() => {}); // it is explained where the view is asked for
   }
 
-  #add(tab) {
-    const [key, label, load] = tab;
+  #add([key, label, load]) {
     const root = el("section", { class: "view", id: `view-${key}`, "aria-label": label() });
     this.main.append(root);
     const one = { root, view: null };
@@ -83,13 +73,9 @@ export class Tabs {
       one.view = createView(one.root, this.#store);
     } catch (error) {
       console.error(error);
-      this.#explain(one.root);
+      const again = el("button", { type: "button", text: t("Reload the page"), on: { click: () => location.reload() } });
+      const text = t("This view could not be shown. Nothing of the workbook is lost, and the other views work.");
+      clear(one.root).append(el("div", { class: "page-like" }, el("p", { role: "alert", text }), el("div", { class: "buttons" }, again)));
     }
-  }
-
-  #explain(root) {
-    const again = el("button", { type: "button", text: t("Reload the page"), on: { click: () => location.reload() } });
-    const text = t("This view could not be shown. Nothing of the workbook is lost, and the other views work.");
-    clear(root).append(el("div", { class: "page-like" }, el("p", { role: "alert", text }), el("div", { class: "buttons" }, again)));
   }
 }

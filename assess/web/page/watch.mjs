@@ -10,11 +10,12 @@ const UNREAD_LOOKS = 3; // so often a file that another program writes may not b
 export class Watch extends EventTarget {
   isGone = false;
   #store;
-  #notices = { why: "" };
+  #notices = {};
+  #why = "";
   #timer = 0;
   #isLooking = false;
   #isStranger = false;
-  #isReading = false;
+  #reading = null;
   #unread = 0;
   #told = "";
 
@@ -23,7 +24,13 @@ export class Watch extends EventTarget {
     this.#store = store;
     connection.addEventListener("gone", () => this.#onGone());
     connection.addEventListener("back", () => this.#onBack());
-    store.addEventListener("book", () => this.#showBook());
+    store.addEventListener("book", () => {
+      const { book, state } = store;
+      this.#showTrouble(book ? state : {});
+      if (!book?.remark || this.#told === state.server) return;
+      this.#told = state.server;
+      notice(book.remark, { key: "remark", lasting: true });
+    });
     document.addEventListener("visibilitychange", () => !document.hidden && this.look());
   }
 
@@ -39,7 +46,9 @@ export class Watch extends EventTarget {
     try {
       this.#take(await get("/api/state", AbortSignal.timeout(5 * EVERY_MS)));
     } catch (error) {
-      if (error.status === 401) this.#onStranger();
+      if (error.status !== 401 || this.#isStranger) return;
+      this.#isStranger = true; // the program was started anew, and does not know this window
+      this.#tellGone(t("The program was restarted, and this window is no longer connected. Use the window that it opened, or open the address that it printed."));
     } finally {
       this.#isLooking = false;
     }
@@ -52,33 +61,13 @@ export class Watch extends EventTarget {
     this.dispatchEvent(new CustomEvent("job", { detail: answer.job }));
     if (!store.book || store.waiting || typeof state.version !== "number") return;
     if (state.server !== store.state.server || state.version > store.state.version) {
-      this.#readAgain();
+      // another window of this session changed the workbook, the server read the file again, or it is another server
+      this.#reading ??= store.readAgain().catch(() => {}).finally(() => (this.#reading = null)); // else the next look does
       return;
     }
     if (state.version === store.state.version) store.takeState(state);
     this.#showOutside(state);
     this.#showTrouble(state);
-  }
-
-  /** Another window of this session changed the workbook, the server read the file again, or it is another server. */
-  async #readAgain() {
-    if (this.#isReading) return;
-    this.#isReading = true;
-    try {
-      await this.#store.readAgain();
-    } catch {
-      // the next look finds the same
-    } finally {
-      this.#isReading = false;
-    }
-  }
-
-  #showBook() {
-    const { book, state } = this.#store;
-    this.#showTrouble(book ? state : {});
-    if (!book?.remark || this.#told === state.server) return;
-    this.#told = state.server;
-    notice(book.remark, { key: "remark", lasting: true });
   }
 
   /** The server reads a file that changed by itself; where changes would be lost by that, the user decides. */
@@ -95,17 +84,17 @@ export class Watch extends EventTarget {
     const text = unsaved
       ? t("{name} was changed by another program, such as Excel, while you edited it here. Nothing is lost yet: your edits are in this page, the other changes in the file. Download your version to keep your edits, or read the file again to discard them.", { name })
       : t("{name} was changed by another program and cannot be read as it is now. The page shows what it held before.", { name });
-    const actions = [[t("Download my version"), () => download()], [t("Read the file again"), () => this.#reload()]];
+    const actions = [[t("Download my version"), download], [t("Read the file again"), () => this.#reload()]];
     this.#notices.outside = notice(text, { kind: unsaved ? "info" : "error", actions, key: "outside", lasting: true });
   }
 
   /** What stands in the way of saving, how to end it, and a way to keep the changes; gone once saving works. */
   #showTrouble({ save_error: why = "", unsaved = false }) {
     const text = why && unsaved ? t("Not saved: {why} Saving is tried again every few seconds.", { why }) : why;
-    if (text === this.#notices.why) return;
+    if (text === this.#why) return;
     this.#notices.trouble?.close();
-    this.#notices.why = text;
-    const actions = unsaved ? [[t("Download my version"), () => download()]] : [];
+    this.#why = text;
+    const actions = unsaved ? [[t("Download my version"), download]] : [];
     if (text) this.#notices.trouble = notice(text, { kind: unsaved ? "error" : "info", actions, key: "trouble", lasting: true });
   }
 
@@ -122,11 +111,14 @@ export class Watch extends EventTarget {
   }
 
   #onGone() {
-    this.isGone = true;
-    this.dispatchEvent(new Event("connection"));
     const name = this.#store.book?.mode === "disk" ? this.#store.book.name : "";
     const command = `assess open ${name.includes(" ") ? `"${name}"` : name} --port ${location.port || 80}`.replace("  ", " ");
-    const text = t("The program behind this page does not answer. Start it again: {command}. Changes made meanwhile are kept in this page and sent as soon as it answers.", { command });
+    this.#tellGone(t("The program behind this page does not answer. Start it again: {command}. Changes made meanwhile are kept in this page and sent as soon as it answers.", { command }));
+  }
+
+  #tellGone(text) {
+    this.isGone = true;
+    this.dispatchEvent(new Event("connection"));
     this.#notices.gone = notice(text, { kind: "error", key: "gone", lasting: true });
   }
 
@@ -135,15 +127,6 @@ export class Watch extends EventTarget {
     this.#notices.gone?.close();
     this.dispatchEvent(new Event("connection"));
     this.#store.resend();
-  }
-
-  /** The program was started anew, and does not know this window. */
-  #onStranger() {
-    if (this.#isStranger) return;
-    this.isGone = this.#isStranger = true;
-    this.dispatchEvent(new Event("connection"));
-    const text = t("The program was restarted, and this window is no longer connected. Use the window that it opened, or open the address that it printed.");
-    this.#notices.gone = notice(text, { kind: "error", key: "gone", lasting: true });
   }
 }
 
