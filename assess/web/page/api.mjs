@@ -6,11 +6,7 @@ const HEADERS = { "X-Assess": "1" };
 export class ApiError extends Error {
   constructor(status, body = {}) {
     super([body.message, body.fix].filter(Boolean).join(" "));
-    this.name = "ApiError";
-    this.status = status;
-    this.message = this.message || "";
-    this.fix = body.fix ?? "";
-    this.body = body;
+    Object.assign(this, { name: "ApiError", status, fix: body.fix ?? "", body });
   }
 }
 

@@ -9,11 +9,7 @@ export const CLASSES = ["very_high", "high", "medium", "low"];
 const SIGNS = { very_high: "■", high: "▲", medium: "◇", low: "○" };
 const WORDS = { very_high: () => t("very high"), high: () => t("high"), medium: () => t("medium"), low: () => t("low") };
 
-/**
- * @param {string} key very_high, high, medium, low or "" where a piece has no class
- * @returns {{sign: string, word: string, css: string}} css is the class of page.css that sets its colours: as background and
- *   color of HTML, fill of SVG; in page.css the variables are --very-high and --very-high-ink
- */
+/** Sign, word and `css`, the class of page.css that sets its colours, of a class; "" is that of a piece without one. */
 export function describe(key) {
   if (!SIGNS[key]) return { sign: "–", word: t("no class"), css: "class-none" };
   return { sign: SIGNS[key], word: WORDS[key](), css: `class-${key.replace("_", "-")}` };

@@ -2,7 +2,7 @@
 // array of rows of values: a text, a number or null.
 
 /** Cells of a text in which tabs part cells and lines part rows; a cell with either, or with quotes, stands in quotes. */
-export function parseTsv(text) {
+function parseTsv(text) {
   const rows = [];
   let row = [], cell = "", quoted = false, start = true;
   const endCell = () => (row.push(cell), (cell = ""), (start = true));
@@ -35,7 +35,7 @@ function isClosed(text, at) {
 }
 
 /** Cells of the first table in an HTML text, null without one. Nothing in it is run or loaded. */
-export function parseHtml(html) {
+function parseHtml(html) {
   const table = new DOMParser().parseFromString(withoutStyles(html), "text/html").querySelector("table");
   if (!table) return null;
   const block = [];
@@ -46,7 +46,9 @@ export function parseHtml(html) {
     for (const cell of line.cells) {
       while (taken.has(`${r},${c}`)) row[c++] = null;
       row[c] = readCell(cell);
-      reserve(taken, r, c, cell);
+      for (let down = 1; down < Math.min(cell.rowSpan, 1000); down++) {
+        for (let right = 0; right < cell.colSpan; right++) taken.add(`${r + down},${c + right}`);
+      }
       for (let more = 1; more < cell.colSpan; more++) row[c + more] = null;
       c += cell.colSpan;
     }
@@ -62,12 +64,6 @@ function withoutStyles(html) {
     const kept = [...rest.matchAll(/\s(x:num|sdval|data-sheets-value|colspan|rowspan)\s*=\s*("[^"]*"|'[^']*'|[^\s"'>]+)/gi)];
     return `<${tag}${kept.map((one) => one[0]).join("")}>`;
   });
-}
-
-function reserve(taken, r, c, cell) {
-  for (let down = 1; down < Math.min(cell.rowSpan, 1000); down++) {
-    for (let right = 0; right < cell.colSpan; right++) taken.add(`${r + down},${c + right}`);
-  }
 }
 
 /** The exact number where the program gives it, since what is shown may be rounded; else the text. */
@@ -99,30 +95,25 @@ export function readBlock(data) {
   const html = data.getData("text/html");
   const table = html ? parseHtml(html) : null;
   if (!table) return plain;
-  const isSameShape = table.length === plain.length && table.every((row, r) => row.length === plain[r].length);
-  if (!isSameShape) return table;
+  if (table.length !== plain.length || table.some((row, r) => row.length !== plain[r].length)) return table;
   return table.map((row, r) => row.map((value, c) => (typeof value === "number" ? value : plain[r][c])));
 }
 
 const quote = (text) => (/[\t\n\r"]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
 
 /** Rows as lines with tabs, which a spreadsheet takes as cells: a text of a stranger's file becomes no formula there. */
-export const writeList = (rows) => rows.map((row) => row.map(writePlain).join("\t")).join("\n");
-
-function writePlain(value) {
-  if (typeof value === "number") return String(value);
-  const text = value.replace(/[\t\r\n]+/g, " ");
-  return /^\s*[=+\-@\uff1d\uff0b\uff0d\uff20]|^\t/.test(value) ? `'${text}` : text;
+export function writeList(rows) {
+  const isFormula = (value) => typeof value === "string" && /^\s*[=+\-@\uff1d\uff0b\uff0d\uff20]|^\t/.test(value);
+  const write = (value) => (isFormula(value) ? "'" : "") + String(value).replace(/[\t\r\n]+/g, " ");
+  return rows.map((row) => row.map(write).join("\t")).join("\n");
 }
 
 const ESCAPES = { "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" };
 const escapeHtml = (text) => text.replace(/[&<>"]/g, (sign) => ESCAPES[sign]);
 
 /**
- * Put a block on the clipboard as text and as a table; texts are marked as such, so that Excel makes no dates of them.
- * @param {DataTransfer} data
- * @param {Array<Array<*>>} values
- * @param {function(*, number): string} show how a value of a column is shown
+ * Put a block on the clipboard as text and as a table, each value as `show(value, column)` has it; texts are marked as such, so
+ * that Excel makes no dates of them.
  */
 export function writeBlock(data, values, show) {
   const lines = values.map((row) => row.map((value, c) => quote(show(value, c))).join("\t"));

@@ -1,5 +1,7 @@
 // Makes elements. Text of users is set by textContent only, so that markup in it stays text.
 
+import { html, nothing } from "./vendor/lit-html.mjs";
+
 const SVG = "http://www.w3.org/2000/svg";
 const ATTRIBUTES = new Set(["list", "form", "role", "for", "type", "width", "height"]);
 
@@ -40,6 +42,10 @@ export function clear(node) {
 export function labelled(label, field, help = "") {
   return el("label", { class: "field" }, el("span", { class: "field-name", text: label }), field, help && el("span", { class: "hint", text: help }));
 }
+
+/** The same as a template of lit-html. */
+export const field = (label, input, hint = "") => html`<label class="field"><span class="field-name">${label}</span>
+  ${input}${hint ? html`<span class="hint">${hint}</span>` : nothing}</label>`;
 
 /** A drop-down of [value, label] pairs. */
 export function choose(options, value, props) {

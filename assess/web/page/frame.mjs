@@ -6,10 +6,10 @@ import { icon } from "./icons.mjs";
 import { imports, jobs } from "./job.mjs";
 import { acceptDrops, showFiles } from "./open_file.mjs";
 import { notice } from "./messages.mjs";
+import { cellName } from "./sheet.mjs";
 import { Tabs } from "./tabs.mjs";
 import { language, languages, loadTexts, t, tn } from "./texts.mjs";
 import { themeSwitch } from "./theme.mjs";
-import { undoneLine } from "./undone.mjs";
 import { Watch, whenSent } from "./watch.mjs";
 
 /** What keeps an undo of its own: text fields, and the questions of dialogs. */
@@ -25,6 +25,31 @@ function saveState(store, isGone) {
   if (store.waiting || (book.mode === "disk" && state.unsaved)) return [t("Saving…"), false];
   if (book.mode === "disk") return [t("All changes saved"), false];
   return [state.unsaved ? t("Not downloaded yet") : t("No changes since the last download"), false];
+}
+
+const UNDONE_MS = 6000;
+
+/** Tells for a moment what an undo or a redo changed, which may be out of sight or from another window. */
+function undoneLine(store) {
+  const line = el("div", { class: "undone", role: "status" });
+  let timer = 0;
+  const show = (text) => {
+    clearTimeout(timer);
+    line.textContent = text;
+    timer = setTimeout(() => (line.textContent = ""), UNDONE_MS);
+  };
+  store.addEventListener("step", ({ detail }) => (detail.cells.length || detail.rows.length) && show(describe(store, detail)));
+  store.addEventListener("book", () => show(""));
+  return line;
+}
+
+function describe(store, { isUndo, cells, rows }) {
+  if (rows.length) return isUndo ? t("Undone: rows of {sheet}", { sheet: store.sheet(rows[0][0]).title }) : t("Redone: rows of {sheet}", { sheet: store.sheet(rows[0][0]).title });
+  const n = cells.length;
+  if (n > 1) return isUndo ? tn("Undone: {n:,} cell", "Undone: {n:,} cells", n) : tn("Redone: {n:,} cell", "Redone: {n:,} cells", n);
+  const [name, row, at] = cells[0];
+  const cell = cellName(store.sheet(name), row, at);
+  return isUndo ? t("Undone: {cell}", { cell }) : t("Redone: {cell}", { cell });
 }
 
 class Frame {

@@ -32,13 +32,18 @@ export class Form {
     const id = `form-${row}`;
     const found = this.store.problemAt(this.sheet.name, row, AT);
     const isWrong = found?.severity === "error";
+    const focused = () => {
+      this.#names = row;
+      this.draw();
+      this.store.select({ sheet: this.sheet.name, row, at: AT }, "grid");
+    };
     const names = this.#names === row ? listChoices(this.store, column).names : [];
     return html`<div class="form-line">
       <label for=${id}>${label}${unit ? html`<span class="grid-unit"> [${unit}]</span>` : nothing}</label>
       <div>
         <input type="text" id=${id} class=${isWrong ? "error" : ""} aria-describedby="${id}-help ${id}-problem" aria-invalid=${isWrong} spellcheck="false"
           list=${hasChoices(column) ? `${id}-names` : nothing} ?readonly=${!this.canEdit || isComputed(column)} .value=${this.#text(column)}
-          @change=${({ target }) => this.#commit(column, target.value)} @focus=${() => this.#focused(row)} @keydown=${(event) => this.#key(event, column)}>
+          @change=${({ target }) => this.#commit(column, target.value)} @focus=${focused} @keydown=${(event) => this.#key(event, column)}>
         ${hasChoices(column) ? html`<datalist id="${id}-names">${names.map((name) => html`<option value=${name}></option>`)}</datalist>` : nothing}
         <p class="form-problem ${found?.severity ?? ""}" id="${id}-problem" ?hidden=${!found}>${found ? problemText(found) : ""}</p>
       </div>
@@ -48,12 +53,6 @@ export class Form {
 
   #text(column) {
     return showValue(this.sheet.value(column.row, AT), column);
-  }
-
-  #focused(row) {
-    this.#names = row;
-    this.draw();
-    this.store.select({ sheet: this.sheet.name, row, at: AT }, "grid");
   }
 
   #commit(column, text) {
@@ -70,8 +69,7 @@ export class Form {
       this.#commit(column, input.value);
       input.closest(".form-line").nextElementSibling?.querySelector("input").focus();
     } else if (key === "Escape" && isTyped) input.value = this.#text(column);
-    else if (isControl && !isTyped && key.toLowerCase() === "z") shiftKey ? this.store.redo() : this.store.undo();
-    else if (isControl && !isTyped && key.toLowerCase() === "y") this.store.redo();
+    else if (isControl && !isTyped && "zy".includes(key.toLowerCase())) this.store[key.toLowerCase() === "z" && !shiftKey ? "undo" : "redo"]();
     else return;
     event.preventDefault();
     event.stopPropagation();

@@ -54,7 +54,8 @@ export class RowOrder {
 
   /** Where a row stands in the view, -1 where it is filtered out. */
   indexOf(row) {
-    if (!this.#rows) return row > this.sheet.headerRow && row - this.sheet.headerRow <= this.length ? row - this.sheet.headerRow - 1 : -1;
+    const at = row - this.sheet.headerRow - 1;
+    if (!this.#rows) return at < this.length ? Math.max(-1, at) : -1;
     this.#indices ??= new Map(this.#rows.map((one, i) => [one, i]));
     return this.#indices.get(row) ?? -1;
   }
@@ -69,11 +70,8 @@ export class RowOrder {
 
   /** Sort and filter anew. */
   apply() {
-    this.#indices = null;
-    if (this.isPlain) {
-      this.#rows = null;
-      return;
-    }
+    this.#rows = this.#indices = null;
+    if (this.isPlain) return;
     const bad = this.only.has("problems") ? this.store.rowsWithProblems(this.sheet.name) : null;
     const rows = this.sheet.rowNumbers.filter((row) => this.sheet.isUsed(row) && this.#passes(row) && (!bad || bad.has(row)));
     this.#used = rows.length;
@@ -123,17 +121,15 @@ export class RowOrder {
   #sortRows(rows) {
     const { column, down } = this.sort;
     const keys = new Map(rows.map((row) => [row, sortKey(this.store, this.sheet, row, column)]));
-    const turn = down ? -1 : 1;
+    const compare = (a, b) => {
+      if (typeof a !== typeof b) return RANKS[typeof a] - RANKS[typeof b];
+      return typeof a === "number" ? a - b : this.collator.compare(String(a), String(b));
+    };
     rows.sort((one, other) => {
       const [a, b] = [keys.get(one), keys.get(other)];
       if (!isFilled(a) || !isFilled(b)) return isFilled(b) - isFilled(a) || one - other; // blank ones stand last
-      return turn * this.#compare(a, b) || one - other;
+      return (down ? -1 : 1) * compare(a, b) || one - other;
     });
-  }
-
-  #compare(a, b) {
-    if (typeof a !== typeof b) return RANKS[typeof a] - RANKS[typeof b];
-    return typeof a === "number" ? a - b : this.collator.compare(String(a), String(b));
   }
 
   /** The different texts of a column with how often each occurs, sorted; of all used rows. */

@@ -2,33 +2,36 @@
 
 import { get } from "./api.mjs";
 import { writeList } from "./clipboard.mjs";
-import { choose, clear, el, labelled } from "./elements.mjs";
+import { field } from "./elements.mjs";
 import { imports } from "./job.mjs";
 import { notice } from "./messages.mjs";
 import { canLeave } from "./open_file.mjs";
 import { number, t, tn } from "./texts.mjs";
+import { html, nothing, render } from "./vendor/lit-html.mjs";
 
 const FIRST = 12;
-const SIGNS = { warning: "▲", note: "ℹ" };
 
 class ImportView {
   #root;
   #store;
   #shown = "";
   #isShown = false;
+  #isOpening = false;
   #offers = null;
+  /** The reasons whose types are all listed. */
+  #whole = new Set();
 
   constructor(root, store) {
     this.#root = root;
     this.#store = store;
-    imports.addEventListener("change", () => this.#isShown && this.#update());
+    imports.addEventListener("change", () => this.#isShown && this.#draw());
   }
 
   async show() {
     this.#isShown = true;
     this.#offers ??= await get("/api/start").catch(() => ({ shakings: [] }));
     this.#shown = "";
-    this.#update();
+    this.#draw();
     this.#root.querySelector("h2")?.focus({ preventScroll: true });
   }
 
@@ -36,71 +39,80 @@ class ImportView {
     this.#isShown = false;
   }
 
-  #update() {
+  #draw() {
     const one = imports.shown;
     const key = `${one?.id} ${one?.book}`;
-    if (key === this.#shown) return;
+    if (key !== this.#shown) {
+      render(nothing, this.#root); // what was chosen belongs to another one
+      this.#root.scrollTop = 0;
+      this.#whole.clear();
+    }
     this.#shown = key;
-    if (one) this.#draw(one);
-    else clear(this.#root).append(el("div", { class: "page-like" }, el("p", { text: t("No building model has been read.") })));
+    const parts = one ? this.#parts(one) : html`<p>${t("No building model has been read.")}</p>`;
+    render(html`<div class="page-like ${one ? "imported" : ""}">${parts}</div>`, this.#root);
   }
 
-  #draw(one) {
-    const { found } = one;
-    this.#root.scrollTop = 0;
-    clear(this.#root).append(el("div", { class: "page-like imported" },
-      el("h2", { tabIndex: -1, text: t("What was taken from {name}", { name: one.name }) }), headline(found),
-      this.#skipped(found), checks(found), one.book ? this.#back() : this.#opening(one)));
-  }
-
-  // ---- what was skipped
-
-  #skipped(found) {
+  #parts({ name, found, book, workbook }) {
     const maybe = found.skipped.filter((group) => group.is_furniture);
     const others = found.skipped.filter((group) => !group.is_furniture);
-    const n = total(others);
-    const summary = tn("{n:,} element skipped that is not furniture", "{n:,} elements skipped that are not furniture", n);
-    const copy = el("button", { type: "button", text: t("Copy the list"), on: { click: () => copyList(found) } });
-    return [
-      maybe.length > 0 && el("section", { class: "card" }, el("div", { class: "head" },
-        el("h3", { text: tn("{n:,} piece skipped that may be furniture", "{n:,} pieces skipped that may be furniture", total(maybe)) }), copy),
-      el("p", { class: "muted", text: t("Add those that stand on the floor and can fall to the sheet Items by hand.") }), table(maybe)),
-      others.length > 0 && el("details", { class: "card fold", open: maybe.length === 0 && found.pieces === 0 }, el("summary", { text: summary }),
-        maybe.length === 0 && el("div", { class: "buttons" }, copy), table(others)),
-    ];
+    const isOnly = maybe.length === 0;
+    const copy = html`<button type="button" @click=${() => copyList(found)}>${t("Copy the list")}</button>`;
+    const summary = (n) => tn("{n:,} element skipped that is not furniture", "{n:,} elements skipped that are not furniture", n);
+    const head = (n) => tn("{n:,} piece skipped that may be furniture", "{n:,} pieces skipped that may be furniture", n);
+    return html`<h2 tabindex="-1">${t("What was taken from {name}", { name })}</h2>${headline(found)}
+      ${isOnly ? nothing : html`<section class="card"><div class="head"><h3>${head(total(maybe))}</h3>${copy}</div>
+        <p class="muted">${t("Add those that stand on the floor and can fall to the sheet Items by hand.")}</p>${this.#table(maybe)}</section>`}
+      ${others.length ? html`<details class="card fold" ?open=${isOnly && !found.pieces}><summary>${summary(total(others))}</summary>
+        ${isOnly ? html`<div class="buttons">${copy}</div>` : nothing}${this.#table(others)}</details>` : nothing}
+      ${checks(found)}
+      ${book ? html`<div class="buttons"><a class="button primary" href="#sheet">${t("Back to {name}", { name: this.#store.book?.name ?? "" })}</a></div>`
+        : this.#opening(workbook)}`;
+  }
+
+  /** Types and their numbers, by the reason for which they were skipped. */
+  #table(groups) {
+    const count = (n) => html`<td class="num">${number(n, undefined, true)}</td>`;
+    const whole = (text) => html`<tr><td colspan="2">${text}</td></tr>`;
+    const body = ({ reason, count: n, types, more }) => {
+      const shown = this.#whole.has(reason) ? types : types.slice(0, FIRST);
+      const rest = types.length - shown.length;
+      const all = () => (this.#whole.add(reason), this.#draw());
+      return html`<tbody>
+        <tr class="reason"><th scope="rowgroup">${reason.charAt(0).toLocaleUpperCase() + reason.slice(1)}</th>${count(n)}</tr>
+        ${shown.map(([type, of]) => html`<tr><td>${type}</td>${count(of)}</tr>`)}
+        ${rest ? whole(html`<button type="button" class="quiet link" @click=${all}>${tn("Show {n:,} more type", "Show {n:,} more types", rest)}</button>`) : nothing}
+        ${more ? whole(tn("{n:,} more type", "{n:,} more types", more)) : nothing}</tbody>`;
+    };
+    return html`<div class="scroll-x"><table class="plain skipped">
+      <thead><tr><th scope="col">${t("Type")}</th><th scope="col" class="num">${t("Number")}</th></tr></thead>${groups.map(body)}</table></div>`;
   }
 
   // ---- into the workbook
 
-  #opening(one) {
-    const offers = this.#offers.shakings.filter(([key]) => key);
-    this.shaking = choose([["", t("I do not know yet")], ...offers], "");
-    this.open = el("button", { type: "button", class: "primary", text: t("Open the workbook"), on: { click: () => this.#open(one) } });
-    const drop = el("button", { type: "button", text: t("Discard"), on: { click: () => this.#drop() } });
-    const place = this.#offers.can_save
-      ? t("It is saved as {name} in the folder {folder}, plans beside it. No file is replaced.", { name: one.workbook, folder: this.#offers.folder })
-      : t("It is opened as {name} and kept while this page is in use: download it when you are done.", { name: one.workbook });
+  #opening(name) {
+    const { can_save: canSave, folder, shakings } = this.#offers;
     const { book } = this.#store;
-    return el("section", { class: "card opening", "aria-label": t("The new workbook") },
-      labelled(t("Shaking of the ground"), this.shaking, t("The file does not say how strong the ground shakes. Without it there are no risk classes yet.")),
-      el("div", { class: "way" }, el("div", { class: "buttons" }, this.open, drop), el("p", { class: "hint" }, place, book && ` ${t("{name} is closed first.", { name: book.name })}`)));
+    const place = canSave
+      ? t("It is saved as {name} in the folder {folder}, plans beside it. No file is replaced.", { name, folder })
+      : t("It is opened as {name} and kept while this page is in use: download it when you are done.", { name });
+    const offers = [["", t("I do not know yet")], ...shakings.filter(([key]) => key)];
+    const select = html`<select>${offers.map(([key, label]) => html`<option value=${key}>${label}</option>`)}</select>`;
+    return html`<section class="card opening" aria-label=${t("The new workbook")}>
+      ${field(t("Shaking of the ground"), select, t("The file does not say how strong the ground shakes. Without it there are no risk classes yet."))}
+      <div class="way"><div class="buttons">
+        <button type="button" class="primary" ?disabled=${this.#isOpening} @click=${() => this.#open(name)}>${this.#isOpening ? t("Making the workbook…") : t("Open the workbook")}</button>
+        <button type="button" @click=${() => this.#drop()}>${t("Discard")}</button></div>
+        <p class="hint">${place} ${book ? t("{name} is closed first.", { name: book.name }) : nothing}</p></div></section>`;
   }
 
-  #back() {
-    return el("div", { class: "buttons" }, el("a", { class: "button primary", href: "#sheet", text: t("Back to {name}", { name: this.#store.book?.name ?? "" }) }));
-  }
-
-  async #open(one) {
-    if (this.open.disabled || !(await canLeave(this.#store, one.workbook))) return;
-    this.open.disabled = true;
-    this.open.textContent = t("Making the workbook…");
-    try {
-      await imports.open(this.shaking.value);
-    } catch (error) {
-      notice(error.message || t("The server does not answer."), { kind: "error" });
-    }
-    this.open.disabled = false;
-    this.open.textContent = t("Open the workbook");
+  async #open(name) {
+    if (this.#isOpening || !(await canLeave(this.#store, name))) return;
+    const shaking = this.#root.querySelector("select").value;
+    this.#isOpening = true;
+    this.#draw();
+    await imports.open(shaking).catch((error) => notice(error.message || t("The server does not answer."), { kind: "error" }));
+    this.#isOpening = false;
+    this.#draw();
   }
 
   async #drop() {
@@ -124,36 +136,14 @@ function headline(found) {
     found.routes > 0 && tn("{n:,} drafted route", "{n:,} drafted routes", found.routes),
   ].filter(Boolean);
   const first = found.pieces ? t("{pieces} on {floors}", { pieces, floors }) : t("No furniture was found: fill in the sheet Items by hand.");
-  return el("p", { class: "taken" }, el("strong", { text: first }), more.length > 0 && el("span", { class: "muted", text: more.join(" · ") }));
+  return html`<p class="taken"><strong>${first}</strong>${more.length ? html`<span class="muted">${more.join(" · ")}</span>` : nothing}</p>`;
 }
-
-/** Types and their numbers, by the reason for which they were skipped. */
-function table(groups) {
-  const head = el("tr", null, el("th", { scope: "col", text: t("Type") }), el("th", { scope: "col", class: "num", text: t("Number") }));
-  return el("div", { class: "scroll-x" }, el("table", { class: "plain skipped" }, el("thead", null, head), groups.map(body)));
-}
-
-function body(group) {
-  const row = ([type, n]) => el("tr", null, el("td", { text: type }), el("td", { class: "num", text: number(n, undefined, true) }));
-  const node = el("tbody", null,
-    el("tr", { class: "reason" }, el("th", { scope: "rowgroup", text: capital(group.reason) }), el("td", { class: "num", text: number(group.count, undefined, true) })),
-    group.types.slice(0, FIRST).map(row));
-  const rest = group.types.slice(FIRST);
-  const all = () => (more.replaceWith(...rest.map(row)), node.querySelector("th").focus());
-  const label = tn("Show {n:,} more type", "Show {n:,} more types", rest.length);
-  const more = el("tr", null, el("td", { colSpan: 2 }, el("button", { type: "button", class: "quiet link", text: label, on: { click: all } })));
-  if (rest.length) node.append(more);
-  if (group.more) node.append(el("tr", null, el("td", { colSpan: 2, text: tn("{n:,} more type", "{n:,} more types", group.more) })));
-  return node;
-}
-
-const capital = (text) => text.charAt(0).toLocaleUpperCase() + text.slice(1);
 
 function checks({ warnings, remarks }) {
-  const line = (kind) => (text) => el("li", { class: kind }, el("span", { class: "problems-sign", "aria-hidden": "true", text: SIGNS[kind] }), el("span", { text }));
-  if (warnings.length + remarks.length === 0) return null;
-  return el("section", { class: "card" }, el("h3", { text: t("What to check") }),
-    el("ul", { class: "problem-list" }, warnings.map(line("warning")), remarks.map(line("note"))));
+  const line = (kind, sign) => (text) => html`<li class=${kind}><span class="problems-sign" aria-hidden="true">${sign}</span><span>${text}</span></li>`;
+  if (warnings.length + remarks.length === 0) return nothing;
+  return html`<section class="card"><h3>${t("What to check")}</h3>
+    <ul class="problem-list">${warnings.map(line("warning", "▲"))}${remarks.map(line("note", "ℹ"))}</ul></section>`;
 }
 
 /** The list as lines with tabs, which a spreadsheet takes as cells. */

@@ -2,10 +2,9 @@
 
 import { get } from "./api.mjs";
 import { CLASSES, badge, classStyle, classText, describe } from "./classes.mjs";
-import { showFiles } from "./open_file.mjs";
-import { fixButtons } from "./fixes.mjs";
+import { problemLine } from "./fixes.mjs";
 import { simulationText } from "./frame.mjs";
-import { cellName } from "./sheet.mjs";
+import { showFiles } from "./open_file.mjs";
 import { number, percent, t, tn } from "./texts.mjs";
 import { html, nothing, render } from "./vendor/lit-html.mjs";
 
@@ -60,13 +59,11 @@ class OverviewView {
     const asked = (this.#asked += 1);
     try {
       const data = await get("/api/overview");
-      if (asked !== this.#asked) return;
-      this.#data = data;
-      this.#stamp = stamp;
+      if (asked === this.#asked) [this.#data, this.#stamp] = [data, stamp];
     } catch (error) {
-      if (asked !== this.#asked) return;
-      if (error.status) this.#data = { error: error.message };
+      if (error.status && asked === this.#asked) this.#data = { error: error.message };
     }
+    if (asked !== this.#asked) return;
     this.#root.removeAttribute("aria-busy");
     this.#draw();
   }
@@ -106,9 +103,10 @@ class OverviewView {
   // ---- floors
 
   #floors(floors) {
+    const onDot = ({ target }) => target.dataset?.row && this.#reveal(Number(target.dataset.row));
     return html`<section class="card" aria-labelledby="floors-title">
       <h3 id="floors-title">${t("Pieces by floor")}</h3>
-      <div class="stack" @click=${(event) => this.#onDot(event)}>${floors.map((one) => this.#floor(one))}</div>
+      <div class="stack" @click=${onDot}>${floors.map((one) => this.#floor(one))}</div>
     </section>`;
   }
 
@@ -121,22 +119,13 @@ class OverviewView {
     const counts = {};
     for (const one of rows) counts[one.live?.class ?? ""] = (counts[one.live?.class ?? ""] ?? 0) + one.n;
     const said = [...CLASSES, ""].filter((key) => counts[key]).map((key) => t("{word}: {n:,}", { word: describe(key).word, n: counts[key] })).join(", ");
-    const dots = (one) => Array.from({ length: one.n }, () => this.#dot(one, sheet.value(one.row, of)));
+    const dot = ({ row: to, live }) => html`<span class="dot ${classStyle(live)}" data-row=${to} title=${[sheet.value(to, of), classText(live)].filter(Boolean).join(", ")}>${describe(live?.class).sign}</span>`;
+    const dots = (one) => Array.from({ length: one.n }, () => dot(one));
     const label = html`<b>${floor ? floor : floorName("")}</b>${name && name !== floor ? html` <span class="muted">${name}</span>` : nothing}<span class="unseen"> ${said}</span>`;
     return html`<div class="storey">
       <span class="storey-name">${row ? html`<button type="button" class="quiet" title=${t("Show on the plan")} @click=${() => this.#openPlan("Floors", row)}>${label}</button>` : label}</span>
       <span class="dots" aria-hidden="true">${sum(counts) > MOST_DOTS ? [...CLASSES, ""].filter((key) => counts[key]).map((key) => html`<span class="dot many ${describe(key).css}">${describe(key).sign} ${number(counts[key], 0, true)}</span>`) : rows.map(dots)}</span>
     </div>`;
-  }
-
-  #dot({ row, live }, item) {
-    const title = [item, classText(live)].filter(Boolean).join(", ");
-    return html`<span class="dot ${classStyle(live)}" data-row=${row} title=${title}>${describe(live?.class).sign}</span>`;
-  }
-
-  #onDot(event) {
-    const row = event.target.dataset?.row;
-    if (row) this.#reveal(Number(row));
   }
 
   // ---- pieces and fixes
@@ -176,17 +165,10 @@ class OverviewView {
     const rest = found.length - MOST_LACKS;
     return html`<section class="card lacks" aria-labelledby="lacks-title">
       <h3 id="lacks-title">${t("What is missing")}</h3>
-      <ul class="problem-list">${found.slice(0, MOST_LACKS).map((one) => this.#lack(one))}
+      <ul class="problem-list">${found.slice(0, MOST_LACKS).map((one) => problemLine(this.#store, one))}
         ${rest > 0 ? html`<li><a href="#sheet">${tn("{n:,} more in the sheet", "{n:,} more in the sheet", rest)}</a></li>` : nothing}
         ${files ? html`<li><button type="button" @click=${() => showFiles(this.#store)}>${tn("{n} file missing", "{n} files missing", files)}</button></li>` : nothing}</ul>
     </section>`;
-  }
-
-  #lack(problem) {
-    const { severity, sheet, row, at, message, fix } = problem;
-    const go = () => ((location.hash = "#sheet"), this.#store.reveal([sheet, row, at ?? 0]));
-    const own = this.#store.sheet(sheet);
-    return html`<li class=${severity}>${row ? html`<button type="button" class="quiet link" @click=${go}>${cellName(own, row, at ?? 0)}</button>` : html`<b>${own?.title ?? sheet}</b>`} ${message} ${fix} ${fixButtons(this.#store, problem)}</li>`;
   }
 
   // ---- where it leads

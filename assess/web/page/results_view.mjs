@@ -2,10 +2,11 @@
 
 import { get } from "./api.mjs";
 import { CLASSES, badge } from "./classes.mjs";
+import { field } from "./elements.mjs";
+import { problemLine } from "./fixes.mjs";
 import { icon } from "./icons.mjs";
 import { jobs } from "./job.mjs";
 import { notice } from "./messages.mjs";
-import { cellName } from "./sheet.mjs";
 import { bytes, language, number, t, tn } from "./texts.mjs";
 import { html, nothing, render } from "./vendor/lit-html.mjs";
 
@@ -30,6 +31,7 @@ class ResultsView {
   #store;
   #isShown = false;
   #fault = null;
+  /** Requests go one after another: whether the run at hand serves is known once the one before is answered. */
   #making = Promise.resolve();
   #pair = [null, null];
   #compared = null;
@@ -99,7 +101,7 @@ class ResultsView {
   #file(key, label, file = { state: "" }, isBlocked) {
     const id = encodeURIComponent(jobs.current?.id ?? "");
     const { state, message, name, bytes: size } = file;
-    const make = html`<button type="button" class=${key === "pdf" && !isBlocked ? "primary" : ""} ?disabled=${isBlocked} aria-label=${t("Make: {file}", { file: label })} @click=${() => this.#make(key)}>${state === "failed" ? t("Try again") : t("Make")}</button>`;
+    const make = html`<button type="button" class=${key === "pdf" && !isBlocked ? "primary" : ""} ?disabled=${isBlocked} aria-label=${t("Make: {file}", { file: label })} @click=${() => (this.#making = this.#making.then(() => this.#make(key)))}>${state === "failed" ? t("Try again") : t("Make")}</button>`;
     const there = () => html`<span class="hint">${bytes(size)}</span>
       ${key === "html" ? html`<a class="button" href="/api/job/report?id=${id}" target="_blank" rel="noopener">${icon("external")}${t("Open")}</a>` : nothing}
       <a class="button" href="/api/job/file/${name}?id=${id}" download=${name} aria-label=${t("Download {name}", { name })}>${icon("download")}${t("Download")}</a>`;
@@ -110,7 +112,6 @@ class ResultsView {
 
   #settings() {
     const scenarios = jobs.scenarios ?? [];
-    const field = (label, input, hint = "") => html`<label class="field"><span class="field-name">${label}</span>${input}${hint ? html`<span class="hint">${hint}</span>` : nothing}</label>`;
     const options = (pairs, usual) => pairs.map(([value, label]) => html`<option value=${value} ?selected=${value === usual}>${label}</option>`);
     const runs = [...RUNS.map((n) => [String(n), n === USUAL.runs ? t("{n} (usual)", { n: number(n, 0, true) }) : number(n, 0, true)]), ["auto", t("as many as every class needs, up to 5,000")]];
     return html`<form class="fields run-settings" @submit=${(event) => event.preventDefault()}>
@@ -130,20 +131,15 @@ class ResultsView {
     return { verify, runs: runs === "auto" ? runs : Number(runs), seed: whole(seed), scale: Number(scale) || 1, scenario, first: whole(first) };
   }
 
-  /** One after another: whether the run at hand serves is known once the request before is answered. */
-  #make(format) {
-    this.#making = this.#making.then(() => this.#makeNow(format));
-  }
-
   /** Make a file of the run at hand where that is of the workbook as it is, and of these settings; else of a new one. */
-  async #makeNow(format) {
+  async #make(format) {
     const job = jobs.current;
     const request = this.#request();
     const isSame = job && !job.is_old && ["running", "done"].includes(job.state) && Object.entries(request).every(([name, value]) => usual(job.settings)[name] === value);
     this.#fault = null;
     try {
-      if (isSame) await jobs.make(job.id, [format]);
-      else await jobs.start({ ...request, formats: [format] });
+      if (isSame) await jobs.post("/api/job/files", { id: job.id, formats: [format] });
+      else await jobs.post("/api/job", { ...request, formats: [format] });
     } catch (error) {
       this.#fault = { message: error.message || t("The server does not answer."), problems: error.body?.problems ?? [] };
     }
@@ -156,15 +152,11 @@ class ResultsView {
     const parts = [label, language() === "en" && detail !== label ? detail : "", `${Math.floor(100 * share)} %`, typeof left === "number" ? timeLeft(left) : ""]; // the detail is not translated
     return html`<section class="card" aria-label=${t("Progress")}><p role="status">${parts.filter(Boolean).join(", ")}</p>
       <progress max="1" .value=${share} aria-label=${t("Progress")}></progress>
-      <div class="buttons"><button type="button" @click=${() => this.#try(() => jobs.cancel())}>${t("Cancel")}</button></div></section>`;
+      <div class="buttons"><button type="button" @click=${() => this.#post("cancel")}>${t("Cancel")}</button></div></section>`;
   }
 
-  async #try(act) {
-    try {
-      await act();
-    } catch (error) {
-      notice(error.message || t("The server does not answer."), { kind: "error" });
-    }
+  #post(what, body) {
+    return jobs.post(`/api/job/${what}`, body).catch(explain);
   }
 
   /** What keeps it from running: the errors alone, each with a way to its cell. */
@@ -176,12 +168,10 @@ class ResultsView {
       ${errors.length ? html`<ul class="problem-list">${errors.slice(0, MOST_SHOWN).map((one) => this.#error(one))}${rest > 0 ? html`<li>${tn("{n:,} more", "{n:,} more", rest)}</li>` : nothing}</ul>` : nothing}</section>`;
   }
 
-  #error({ sheet, cell, message, fix }) {
-    const own = this.#store.sheet(sheet);
-    const [, letters, row] = /^([A-Z]{1,3})(\d+)/.exec(cell ?? "") ?? [];
+  #error(problem) {
+    const [, letters, row] = /^([A-Z]{1,3})(\d+)/.exec(problem.cell ?? "") ?? [];
     const at = [...(letters ?? "")].reduce((sum, letter) => 26 * sum + letter.charCodeAt(0) - 64, 0) - 1;
-    const go = () => ((location.hash = "#sheet"), this.#store.reveal([sheet, Number(row), at]));
-    return html`<li class="error">${row ? html`<button type="button" class="quiet link" @click=${go}>${cellName(own, Number(row), at)}</button>` : html`<b>${own?.title ?? sheet}</b>`} ${message} ${fix}</li>`;
+    return problemLine(this.#store, { ...problem, row: Number(row ?? 0), at, actions: [] });
   }
 
   // ---- runs
@@ -194,7 +184,7 @@ class ResultsView {
       <tbody>${jobs.runs.map((one) => html`<tr>${many ? html`${radio(0, one.id, t("Before: {time}", { time: when(one.time) }))}${radio(1, one.id, t("After: {time}", { time: when(one.time) }))}` : nothing}
         <th scope="row">${when(one.time)}<span class="hint"> ${t("version {n}", { n: one.version })}, ${settingsText(one.settings)}</span></th><td>${one.outcome}</td>
         <td>${one.files.map(({ name }) => html`<a href="/api/job/file/${name}?id=${one.id}" download=${name}>${name}</a> `)}</td>
-        <td><button type="button" class="quiet square" aria-label=${t("Remove the run of {time}", { time: when(one.time) })} title=${t("Remove")} @click=${() => this.#try(() => jobs.remove(one.id))}>${icon("trash")}</button></td></tr>`)}</tbody></table></div>
+        <td><button type="button" class="quiet square" aria-label=${t("Remove the run of {time}", { time: when(one.time) })} title=${t("Remove")} @click=${() => this.#post("remove", { id: one.id })}>${icon("trash")}</button></td></tr>`)}</tbody></table></div>
       ${many ? nothing : html`<p class="hint">${t("Change something and make a report again: both runs are compared here.")}</p>`}
     </section>`;
   }
@@ -204,12 +194,8 @@ class ResultsView {
     this.#compared = null;
     this.#draw();
     if (!before || !after || before === after) return;
-    try {
-      const found = await get(`/api/job/compare?before=${before}&after=${after}`);
-      if (this.#pair[0] === before && this.#pair[1] === after) this.#compared = found;
-    } catch (error) {
-      notice(error.message || t("The server does not answer."), { kind: "error" });
-    }
+    const found = await get(`/api/job/compare?before=${before}&after=${after}`).catch(explain);
+    if (this.#pair[0] === before && this.#pair[1] === after) this.#compared = found;
     this.#draw();
   }
 
@@ -225,6 +211,7 @@ class ResultsView {
   }
 }
 
+const explain = (error) => void notice(error.message || t("The server does not answer."), { kind: "error" });
 const when = (time) => new Date(time).toLocaleString(language() === "en" ? "en-GB" : language(), { dateStyle: "medium", timeStyle: "short" });
 
 /** The settings of a run, all of them. */
@@ -244,9 +231,8 @@ function settingsText(settings) {
   return parts.filter(Boolean).join(", ") || t("usual settings");
 }
 
-function timeLeft(seconds) {
-  if (seconds < MINUTE_S) return tn("about {n} s left", "about {n} s left", Math.max(1, Math.round(seconds)));
-  return tn("about {n} min left", "about {n} min left", Math.round(seconds / MINUTE_S));
-}
+const timeLeft = (seconds) => (seconds < MINUTE_S
+  ? tn("about {n} s left", "about {n} s left", Math.max(1, Math.round(seconds)))
+  : tn("about {n} min left", "about {n} min left", Math.round(seconds / MINUTE_S)));
 
 export const createView = (root, store) => new ResultsView(root, store);

@@ -1,7 +1,7 @@
 // A new building on one screen: what it is, how it shakes, what stands in its first room. Most may stay blank.
 
 import { get } from "./api.mjs";
-import { el } from "./elements.mjs";
+import { el, field } from "./elements.mjs";
 import { icon } from "./icons.mjs";
 import { language, languages, number, t, tn } from "./texts.mjs";
 import { html, nothing, render, svg } from "./vendor/lit-html.mjs";
@@ -9,8 +9,7 @@ import { html, nothing, render, svg } from "./vendor/lit-html.mjs";
 const SUFFIX = ".xlsx";
 const MOST_COUNT = 200;
 const MOST_RECORDS = 2;
-const INCH = 0.0254;
-const FOOT = 0.3048;
+const [INCH, FOOT] = [0.0254, 0.3048];
 const MANY = 3;
 const PEAKS = "peaks";
 const RECORD = "record";
@@ -28,17 +27,13 @@ export class StartForm {
   #map = null;
   #said = "";
 
-  /**
-   * @param {object} offers the answer of GET /api/start
-   * @param {(request: object, records: File[]) => void} begin has the workbook made
-   * @param {() => void} leave goes back to the choices
-   */
+  /** `offers` are of GET /api/start, `begin(request, records)` has the workbook made, `leave` goes back to the choices. */
   constructor(offers, begin, leave) {
     this.#offers = { languages: languages(), ...offers };
     this.#begin = begin;
     this.#leave = leave;
-    const known = this.#offers.languages.some(([code]) => code === language());
-    Object.assign(this.#values, { use: offers.uses[0][0], language: known ? language() : this.#offers.languages[0][0] });
+    const codes = this.#offers.languages.map(([code]) => code);
+    Object.assign(this.#values, { use: offers.uses[0][0], language: codes.includes(language()) ? language() : codes[0] });
     this.node.addEventListener("submit", (event) => (event.preventDefault(), this.#send("template")));
     this.#followUse();
   }
@@ -53,6 +48,7 @@ export class StartForm {
   #draw() {
     const { shaking } = this.#values;
     const { can_save: canSave, folder } = this.#offers;
+    const shakings = [["", t("I do not know yet")], ...this.#offers.shakings, [PEAKS, t("I know PGA and PGV")], [RECORD, t("I have a record of the nearest station")]];
     const place = canSave
       ? t("It is made in the folder {folder}, in which assess open was started, and every change is saved in it.", { folder })
       : t("It is kept while this page is in use: download it when you are done.");
@@ -62,7 +58,7 @@ export class StartForm {
       <div class="columns">
         <fieldset><legend>${t("The building")}</legend>${this.#building()}</fieldset>
         <div class="rest"><fieldset><legend>${t("How it shakes")}</legend>
-          ${this.#choice("shaking", t("Shaking of the ground"), this.#shakings(), t("How strong the ground shakes where the building stands."))}
+          ${this.#choice("shaking", t("Shaking of the ground"), shakings, t("How strong the ground shakes where the building stands."))}
           ${shaking === PEAKS ? html`<div class="fields">${this.#number("ground_pga", t("Ground PGA"))}${this.#number("ground_pgv", t("Ground PGV"))}</div>` : nothing}
           ${shaking === RECORD ? this.#recordField() : nothing}
         </fieldset>
@@ -88,17 +84,17 @@ export class StartForm {
     const each = this.#offers.storey / (unit === "ft" ? FOOT : 1);
     const assumed = storeys.trim() && !height.trim() && !this.#fault("storeys")
       ? t("Blank: {height} {unit} is assumed, {each} {unit} a storey.", { height: number(each * Number(storeys), 3), each: number(each, 3), unit }) : "";
+    const load = async (event) => {
+      if (event.target.open) this.#map ??= await get("/api/map").catch(() => null);
+      this.#draw();
+    };
     return html`
       <div class="fields">${this.#choice("use", t("Use"), this.#offers.uses)}${this.#text("building", t("Name of the building"))}</div>
       ${this.#text("address", t("Street and town"))}
       <div class="fields">${this.#number("storeys", t("Storeys"))}${this.#number("height", t("Height"), assumed)}
         ${this.#choice("structure", t("Structure"), [["", t("I do not know")], ...this.#offers.structures.filter(([key]) => key !== "unknown")])}</div>
       ${this.#text("coordinates", t("Coordinates"), this.#values.coordinates, t("Latitude and longitude, such as 37.87, -122.27."))}
-      ${this.#mapField()}`;
-  }
-
-  #shakings() {
-    return [["", t("I do not know yet")], ...this.#offers.shakings, [PEAKS, t("I know PGA and PGV")], [RECORD, t("I have a record of the nearest station")]];
+      <details @toggle=${load}><summary>${t("On the map of San Francisco Bay")}</summary>${this.#map ? this.#drawMap() : nothing}</details>`;
   }
 
   #recordField() {
@@ -110,8 +106,12 @@ export class StartForm {
   #room() {
     const { use } = this.#values;
     const types = this.#offers.types[use] ?? [];
+    const n = this.#fault("storeys") ? 0 : Number(this.#values.storeys);
+    const isAbove = n && Number(/\d+/.exec(this.#values.floor)?.[0] ?? 0) >= n;
+    const about = isAbove ? tn("The building has {n} storey: its only floor is 0.", "The building has {n} storeys: its floors are 0 to {top}.", n, { top: n - 1 })
+      : t("0 is the ground floor.");
     return html`
-      <div class="fields">${this.#text("floor", t("Floor"), this.#values.floor, this.#aboutFloor())}${this.#text("room", t("Room"), this.#values.room, "", "rooms-of-use")}</div>
+      <div class="fields">${this.#text("floor", t("Floor"), this.#values.floor, about)}${this.#text("room", t("Room"), this.#values.room, "", "rooms-of-use")}</div>
       <datalist id="rooms-of-use">${(this.#offers.rooms[use] ?? []).map((room) => html`<option value=${room}></option>`)}</datalist>
       <ul class="pieces">${this.#pieces.map((piece, at) => html`<li>
         <input type="number" min="1" max=${MOST_COUNT} .value=${piece.count} aria-label=${t("How many")} @input=${(event) => (piece.count = event.target.value)}>
@@ -123,16 +123,7 @@ export class StartForm {
       <div class="buttons"><button type="button" @click=${() => (this.#addPiece(), this.#draw())}>${icon("plus")} ${t("Add another type")}</button></div>`;
   }
 
-  // ---- the map that comes along: a click sets the coordinates
-
-  #mapField() {
-    const load = async (event) => {
-      if (event.target.open && !this.#map) this.#map = await get("/api/map").catch(() => null);
-      this.#draw();
-    };
-    return html`<details @toggle=${load}><summary>${t("On the map of San Francisco Bay")}</summary>${this.#map ? this.#drawMap() : nothing}</details>`;
-  }
-
+  /** The map that comes along: a click sets the coordinates. */
   #drawMap() {
     const [west, south, east, north] = this.#map.edges;
     const across = Math.cos(((south + north) / 2) * (Math.PI / 180));
@@ -170,8 +161,8 @@ export class StartForm {
   }
 
   #choice(name, label, options, help = "") {
-    return html`<label class="field"><span class="field-name">${label}</span><select name=${name} @change=${(event) => this.#set(name, event.target.value)}>
-      ${options.map(([key, text]) => html`<option value=${key} .selected=${key === this.#values[name]}>${text}</option>`)}</select>${help ? html`<span class="hint">${help}</span>` : nothing}</label>`;
+    const list = options.map(([key, text]) => html`<option value=${key} .selected=${key === this.#values[name]}>${text}</option>`);
+    return field(label, html`<select name=${name} @change=${(event) => this.#set(name, event.target.value)}>${list}</select>`, help);
   }
 
   #range(name) {
@@ -189,14 +180,6 @@ export class StartForm {
     if (value >= low && value <= high && (name !== "storeys" || Number.isInteger(value))) return "";
     if (name === "storeys") return t("Type a whole number from {low} to {high}.", { low, high });
     return t("Type a number from {low} to {high} {unit}.", { low: number(low), high: number(high), unit });
-  }
-
-  #aboutFloor() {
-    const { floor, storeys } = this.#values;
-    const n = this.#fault("storeys") ? 0 : Number(storeys);
-    const top = n - 1;
-    if (n && Number(/\d+/.exec(floor)?.[0] ?? 0) > top) return tn("The building has {n} storey: its only floor is 0.", "The building has {n} storeys: its floors are 0 to {top}.", n, { top });
-    return t("0 is the ground floor.");
   }
 
   /** Rooms and types are those of the use; pieces that it does not have go. */
@@ -254,7 +237,7 @@ function readPoint(text) {
 function describeSize(type, units) {
   if (!type) return "";
   const isInches = units === "imperial";
-  const sizes = [type.breadth, type.width, type.height].map((one) => (one ? number(Math.round(one / (isInches ? INCH : 0.01))) : "?"));
-  const values = { breadth: sizes[0], width: sizes[1], height: sizes[2] };
+  const size = (one) => (one ? number(Math.round(one / (isInches ? INCH : 0.01))) : "?");
+  const values = { breadth: size(type.breadth), width: size(type.width), height: size(type.height) };
   return isInches ? t("{breadth} × {width} × {height} in", values) : t("{breadth} × {width} × {height} cm", values);
 }

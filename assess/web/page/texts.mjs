@@ -24,11 +24,12 @@ export const language = () => catalogue.language;
 export const languages = () => catalogue.languages;
 
 /**
- * A text with `values` put into its braces: {name}, {n:,} grouped, {x:.1f} with so many decimals.
- * @param {string} text English, a plain string literal, so that it is found for the catalogues
+ * A text with `values` put into its braces: {name}, {n:,} grouped, {x:.1f} with so many decimals. It is English, a plain string
+ * literal, so that it is found for the catalogues.
  */
 export function t(text, values) {
-  return fill(first(catalogue.texts[text]) || text, values);
+  const found = catalogue.texts[text];
+  return fill((Array.isArray(found) ? found[0] : found) || text, values);
 }
 
 /** The text for one or for many, with {n}. */
@@ -37,8 +38,6 @@ export function tn(one, many, n, values) {
   const found = Array.isArray(forms) ? forms[n === 1 ? 0 : 1] : forms;
   return fill(found || (n === 1 ? one : many), { n, ...values });
 }
-
-const first = (found) => (Array.isArray(found) ? found[0] : found);
 
 function fill(text, values) {
   if (!values) return text;

@@ -5,34 +5,21 @@ import { t } from "./texts.mjs";
 
 const KEY = "assess-theme";
 
-function read() {
-  try {
-    return localStorage.getItem(KEY) ?? "";
+/** Set the theme, or the one that was chosen earlier, and return it; "" is that of the system. */
+export function keepTheme(theme) {
+  try { // the browser may keep nothing: then it holds for this visit
+    if (theme !== undefined) localStorage.setItem(KEY, theme);
+    theme ??= localStorage.getItem(KEY);
   } catch {
-    return ""; // where the browser keeps nothing
+    theme ??= "";
   }
-}
-
-/** Set the theme that was chosen earlier. */
-export function keepTheme() {
-  setTheme(read());
-}
-
-function setTheme(theme) {
   if (theme) document.documentElement.dataset.theme = theme;
   else delete document.documentElement.dataset.theme;
+  return theme ?? "";
 }
 
 export function themeSwitch() {
-  const options = [["", t("Automatic")], ["light", t("Light")], ["dark", t("Dark")]];
-  const select = choose(options, read());
-  select.addEventListener("change", () => {
-    setTheme(select.value);
-    try {
-      localStorage.setItem(KEY, select.value);
-    } catch {
-      // it holds for this visit
-    }
-  });
+  const select = choose([["", t("Automatic")], ["light", t("Light")], ["dark", t("Dark")]], keepTheme());
+  select.addEventListener("change", () => keepTheme(select.value));
   return select;
 }
