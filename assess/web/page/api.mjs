@@ -38,16 +38,14 @@ async function request(path, options = {}) {
 /** @returns {Promise<object>} the answer; rejects with ApiError, or AbortError where `signal` ended it */
 export const get = (path, signal) => request(path, { signal });
 
-export function post(path, body = {}, signal) {
-  const headers = { ...HEADERS, "Content-Type": "application/json" };
-  return request(path, { method: "POST", headers, body: JSON.stringify(body), signal });
-}
+const write = (type) => (path, body, signal) =>
+  request(path, { method: "POST", headers: { ...HEADERS, "Content-Type": type }, body, signal });
+const writeJson = write("application/json");
+
+export const post = (path, body = {}, signal) => writeJson(path, JSON.stringify(body), signal);
 
 /** Send the bytes of a file. */
-export function send(path, blob, signal) {
-  const headers = { ...HEADERS, "Content-Type": "application/octet-stream" };
-  return request(path, { method: "POST", headers, body: blob, signal });
-}
+export const send = write("application/octet-stream");
 
 /** Ask for something as the page is left: nobody waits for the answer. */
 export function leave(path) {

@@ -115,14 +115,9 @@ class Frame {
   /** What is not always needed. */
   #menu() {
     const p = this.#parts;
-    p.open = el("a", { class: "button editing-only", href: "#start", title: t("Make a new workbook, or open another") }, icon("folder"), t("New or open…"));
+    const open = el("a", { class: "button editing-only", href: "#start", title: t("Make a new workbook, or open another") }, icon("folder"), t("New or open…"));
     p.imported = el("a", { class: "button", href: "#import", title: t("What was imported, and what was skipped"), hidden: true }, icon("info"), t("Imported"));
-    p.items = el("div", { class: "items", on: { click: () => p.menu.hidePopover() } }, p.open, p.imported);
-    p.menu = el("div", { id: "menu", popover: "auto" }, p.items, this.#languageSwitch(), labelled(t("Colours"), themeSwitch()));
-    return p.menu;
-  }
-
-  #languageSwitch() {
+    p.items = el("div", { class: "items", on: { click: () => p.menu.hidePopover() } }, open, p.imported);
     const select = choose(languages(), language());
     select.addEventListener("change", async () => {
       await loadTexts(select.value);
@@ -130,7 +125,8 @@ class Frame {
       this.#isReloading = true; // what waits is sent, and the book is the server's: nothing is lost
       location.reload();
     });
-    return labelled(t("Language of the page"), select);
+    p.menu = el("div", { id: "menu", popover: "auto" }, p.items, labelled(t("Language of the page"), select), labelled(t("Colours"), themeSwitch()));
+    return p.menu;
   }
 
   async #onDownload(event) {

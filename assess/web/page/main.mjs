@@ -7,5 +7,4 @@ import { keepTheme } from "./theme.mjs";
 
 keepTheme();
 await loadTexts();
-const frame = buildFrame(store);
-await frame.start();
+await buildFrame(store).start();

@@ -18,6 +18,7 @@ const count = {
 
 export class ProblemsList {
   #hidden = new Set();
+  #close = () => (this.toggle(false), this.button.focus());
 
   constructor(store) {
     this.store = store;
@@ -34,11 +35,6 @@ export class ProblemsList {
     this.draw();
   }
 
-  #close() {
-    this.toggle(false);
-    this.button.focus();
-  }
-
   draw() {
     const { problems, liveError, moreProblems } = this.store;
     this.node.hidden = !this.isOpen;
@@ -50,7 +46,7 @@ export class ProblemsList {
     const rest = Math.max(0, shown.length - MOST) + moreProblems;
     render(html`<div class="problems-top">
         <div class="problems-filters" role="group" aria-label=${t("Which problems to show")}>${counted.map((one) => this.#filter(...one))}</div>
-        <button type="button" class="quiet square" aria-label=${t("Close")} title=${t("Close")} @click=${() => this.#close()}>${icon("close")}</button>
+        <button type="button" class="quiet square" aria-label=${t("Close")} title=${t("Close")} @click=${this.#close}>${icon("close")}</button>
       </div>
       <ul class="problems-rows">
         ${liveError ? html`<li class="error">${liveError}</li>` : nothing}

@@ -62,20 +62,15 @@ export class Tabs {
     this.main.append(root);
     const one = { root, view: null };
     this.#views.set(key, one);
-    one.ready = this.#make(one, load);
+    one.ready = load().then(({ createView }) => (one.view = createView(root, this.#store))).catch((error) => this.#explain(root, error));
     return one;
   }
 
-  /** Make a view. One that fails says so in its place and leaves the rest of the page as it is. */
-  async #make(one, load) {
-    try {
-      const { createView } = await load();
-      one.view = createView(one.root, this.#store);
-    } catch (error) {
-      console.error(error);
-      const again = el("button", { type: "button", text: t("Reload the page"), on: { click: () => location.reload() } });
-      const text = t("This view could not be shown. Nothing of the workbook is lost, and the other views work.");
-      clear(one.root).append(el("div", { class: "page-like" }, el("p", { role: "alert", text }), el("div", { class: "buttons" }, again)));
-    }
+  /** A view that fails says so in its place and leaves the rest of the page as it is. */
+  #explain(root, error) {
+    console.error(error);
+    const again = el("button", { type: "button", text: t("Reload the page"), on: { click: () => location.reload() } });
+    const text = t("This view could not be shown. Nothing of the workbook is lost, and the other views work.");
+    clear(root).append(el("div", { class: "page-like" }, el("p", { role: "alert", text }), el("div", { class: "buttons" }, again)));
   }
 }
