@@ -253,6 +253,7 @@ class GridView {
       const more = [isComputed(active.column) && t("computed"), problem && problemText(problem), this.#drawSums()];
       this.say([...cell, ...more].filter(Boolean).join(", "));
     };
+    clearTimeout(this.#timer);
     this.#timer = setTimeout(say, SAY_MS);
     const { quiet } = this.store;
     if (quiet && (quiet[0] !== sheet.name || quiet[1] !== active.row)) this.store.hush(null);
