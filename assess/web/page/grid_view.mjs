@@ -209,7 +209,10 @@ class GridView {
     const text = this.sheet.layout === "form" ? "" : describeOrder(this.grid.order);
     this.order.hidden = text === "";
     const all = () => {
-      Object.assign(this.grid.order, { sort: null, filters: new Map(), only: new Set() });
+      const { order } = this.grid;
+      order.sort = null;
+      order.filters.clear();
+      order.only.clear();
       this.reorder();
       this.editor.focus();
     };
