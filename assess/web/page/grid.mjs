@@ -118,7 +118,7 @@ export class Grid extends EventTarget {
   /** The range over which the fill handle is dragged. */
   fillTarget = null;
   #rows = [];
-  #asked = false;
+  #asked = 0;
   /** By sheet: its order, and where it was left. */
   #kept = new Map();
 
@@ -260,10 +260,8 @@ export class Grid extends EventTarget {
 
   /** Draw before the next frame. */
   ask() {
-    if (this.#asked) return;
-    this.#asked = true;
-    requestAnimationFrame(() => {
-      this.#asked = false;
+    this.#asked ||= requestAnimationFrame(() => {
+      this.#asked = 0;
       this.draw();
     });
   }

@@ -94,12 +94,14 @@ export class Actions {
   summarise() {
     const { ranges, grid } = this;
     if (cellsIn(ranges) > MOST_CELLS) return null;
-    const values = ranges.flatMap(([r0, c0, r1, c1]) => span(r0, r1).flatMap((r) => span(c0, c1).map((c) => grid.value(r, c))));
+    const inRow = (r, c0, c1) => span(c0, c1).map((c) => grid.value(r, c));
+    const values = ranges.flatMap(([r0, c0, r1, c1]) => span(r0, r1).flatMap((r) => inRow(r, c0, c1)));
     const numbers = values.filter((value) => typeof value === "number");
-    return { count: values.filter(isFilled).length, numbers: numbers.length, sum: numbers.reduce((sum, n) => sum + n, 0) };
+    const sum = numbers.reduce((all, n) => all + n, 0);
+    return { count: values.filter(isFilled).length, numbers: numbers.length, sum };
   }
 
-  /** Continue the selected cells over a larger range; `other` (Ctrl) copies in place of a series, or the other way round. */
+  /** Continue the selected cells over a larger range; `other` (Ctrl): copies for a series, or a series for copies. */
   fillTo(target, other) {
     const [r0, c0, r1, c1] = this.grid.selection.range;
     const [q0, d0, q1, d1] = target;
@@ -109,7 +111,8 @@ export class Actions {
       const values = source.map(([r, c]) => this.grid.value(r, c));
       if (isBack) values.reverse();
       const isSeries = other || !hasChoices(column);
-      const next = (isSeries && findSeries(values, other && !hasChoices(column))) || ((n) => values[(n - 1) % values.length]);
+      const copy = (n) => values[(n - 1) % values.length];
+      const next = (isSeries && findSeries(values, other && !hasChoices(column))) || copy;
       list.forEach(([r, c], i) => made.set(`${r},${c}`, next(i + 1)));
     };
     const [isUp, isLeft] = [q0 < r0, d0 < c0];
@@ -137,9 +140,11 @@ export class Actions {
     }
     const columns = grid.span(c0, c1);
     if (cellsIn(ranges.map(([r0, , r1]) => [r0, 1, r1, columns.length])) > MOST_CELLS) return false;
-    const value = (r, column) => (isComputed(column) ? cellText(grid.store, grid.sheet, grid.order.row(r), column) : this.#value(r, column));
+    const text = (r, column) => cellText(grid.store, grid.sheet, grid.order.row(r), column);
+    const value = (r, column) => (isComputed(column) ? text(r, column) : this.#value(r, column));
     const values = withHeaders ? [columns.map(({ label, unit }) => (unit ? `${label} [${unit}]` : label))] : [];
-    for (const r of ranges.flatMap(([r0, , r1]) => span(r0, r1))) values.push(columns.map((column) => value(r, column)));
+    const rows = ranges.flatMap(([r0, , r1]) => span(r0, r1));
+    for (const r of rows) values.push(columns.map((column) => value(r, column)));
     writeBlock(data, values, (shown, i) => showValue(shown, columns[i]));
     const n = values.length * columns.length;
     this.say(tn("{n:,} cell copied", "{n:,} cells copied", n));

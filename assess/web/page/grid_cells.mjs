@@ -44,8 +44,8 @@ export function cellText(store, sheet, row, column) {
 /** What a column is sorted by. */
 export function sortKey(store, sheet, row, column) {
   const live = store.live.get(row);
-  if (isClass(column)) return live?.class ? CLASSES.length - CLASSES.indexOf(live.class) + (live.chance ?? 0) / 2 : live?.word || null;
-  return cellValue(store, sheet, row, column);
+  if (!isClass(column)) return cellValue(store, sheet, row, column);
+  return live?.class ? CLASSES.length - CLASSES.indexOf(live.class) + (live.chance ?? 0) / 2 : live?.word || null;
 }
 
 const SIZES = new Set(["breadth", "width", "height"]);

@@ -134,7 +134,8 @@ export class Editor {
     ];
     Object.assign(input.style, { transform: `translate(${x}px, ${y}px)`, minWidth: `${width}px`, minHeight: `${ROW_HEIGHT}px` });
     input.classList.toggle("over", isFrozen);
-    if (this.list.isOpen) return void this.list.place({ left, top, width, height: Math.max(ROW_HEIGHT, input.offsetHeight) });
+    const height = Math.max(ROW_HEIGHT, input.offsetHeight);
+    if (this.list.isOpen) return void this.list.place({ left, top, width, height });
     const label = `${active.name} ${active.column.label}`;
     if (input.getAttribute("aria-label") !== label) input.setAttribute("aria-label", label);
     if (document.getElementById("grid-active")) input.setAttribute("aria-activedescendant", "grid-active");

@@ -69,7 +69,8 @@ export class Form {
       this.#commit(column, input.value);
       input.closest(".form-line").nextElementSibling?.querySelector("input").focus();
     } else if (key === "Escape" && isTyped) input.value = this.#text(column);
-    else if (isControl && !isTyped && "zy".includes(key.toLowerCase())) this.store[key.toLowerCase() === "z" && !shiftKey ? "undo" : "redo"]();
+    else if (isControl && !isTyped && key.toLowerCase() === "z") shiftKey ? this.store.redo() : this.store.undo();
+    else if (isControl && !isTyped && key.toLowerCase() === "y") this.store.redo();
     else return;
     event.preventDefault();
     event.stopPropagation();

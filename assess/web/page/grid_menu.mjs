@@ -42,18 +42,19 @@ export class ColumnMenu extends Menu {
     const now = order.filters.get(column.label) ?? { contains: "", values: null };
     const contains = el("input", { type: "search", value: now.contains, placeholder: t("contains …"), "aria-label": t("Rows whose text contains") });
     const texts = order.texts(column);
-    const boxes = new Map(texts.slice(0, MOST_VALUES).map(([text]) => [text, el("input", { type: "checkbox", checked: !now.values || now.values.has(text) })]));
+    const box = (text) => el("input", { type: "checkbox", checked: !now.values || now.values.has(text) });
+    const boxes = new Map(texts.slice(0, MOST_VALUES).map(([text]) => [text, box(text)]));
     const value = ([text, count]) => el("label", null, boxes.get(text), " ", text || t("(blank)"), el("span", { class: "grid-menu-count", text: ` ${count}` }));
     const act = (change) => () => (change(), this.close(), this.view.reorder());
     const apply = act(() => {
-      const ticked = [...boxes].filter(([, box]) => box.checked).map(([text]) => text);
+      const ticked = [...boxes].filter(([, one]) => one.checked).map(([text]) => text);
       const values = ticked.length === boxes.size || texts.length > MOST_VALUES ? null : new Set(ticked);
       const text = contains.value.trim();
       if (text || values) order.filters.set(column.label, { column, contains: text, values });
       else order.filters.delete(column.label);
     });
     const sort = (down) => act(() => (order.sort = { column, down }));
-    const tick = (on) => () => boxes.forEach((box) => (box.checked = on));
+    const tick = (on) => () => boxes.forEach((one) => (one.checked = on));
     const button = (text, click, css = "") => el("button", { type: "button", class: css, text, on: { click } });
     this.node.replaceChildren(
       el("div", { class: "grid-menu-title", text: column.label }),
@@ -132,7 +133,8 @@ export class ContextMenu extends Menu {
     this.node.replaceChildren(...groups.flatMap((all, at) => [line(at), ...all.map((one) => this.#entry(one))]));
     const edge = box.getBoundingClientRect();
     const cell = this.grid.rectangle(active.r, active.c);
-    this.showAt(...(point ?? [edge.left + cell.left - box.scrollLeft, edge.top + Math.max(headHeight, cell.top - box.scrollTop) + cell.height]));
+    const top = edge.top + Math.max(headHeight, cell.top - box.scrollTop) + cell.height;
+    this.showAt(...(point ?? [edge.left + cell.left - box.scrollLeft, top]));
   }
 
   #entry([text, keys, run, , isShown]) {

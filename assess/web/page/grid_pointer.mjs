@@ -76,7 +76,8 @@ export class Pointer {
     const keeps = (event.ctrlKey || event.metaKey) && !extend && kind !== "all";
     if (keeps) selection.others.push(selection.range);
     const ranges = {
-      cells: [[r0, c0], [r, c]], rows: [[r0, 0], [r, right]], columns: [[0, c0], [bottom, c]], all: [[0, 0], [bottom, right]],
+      cells: [[r0, c0], [r, c]], rows: [[r0, 0], [r, right]], columns: [[0, c0], [bottom, c]],
+      all: [[0, 0], [bottom, right]],
     };
     selection.setRange(...ranges[kind], keeps || (extend && kind !== "all"));
   }
@@ -105,7 +106,6 @@ export class Pointer {
 
   /** Scroll while the pointer is held outside. */
   #scroll() {
-    if (this.#moved) return;
     const step = () => {
       this.#moved = 0;
       if (!this.#drag || !this.#isOutside(this.#drag.event)) return;
@@ -119,7 +119,7 @@ export class Pointer {
       this.#follow();
       this.#moved = requestAnimationFrame(step);
     };
-    this.#moved = requestAnimationFrame(step);
+    this.#moved ||= requestAnimationFrame(step);
   }
 
   #showTarget(range) {

@@ -7,9 +7,10 @@ const BLANK = 40;
 const RANKS = { number: 0, boolean: 1, string: 2 };
 
 export class RowOrder {
+  /** How many of the used rows a filter leaves. */
+  shown = 0;
   #rows = null;
   #indices = null;
-  #used = 0;
   #top = 0;
 
   /** @param {RowOrder} [earlier] that of the same sheet before the book was read again */
@@ -39,11 +40,7 @@ export class RowOrder {
     return this.#rows ? this.#rows.length : Math.max(0, this.#end - this.sheet.headerRow);
   }
 
-  /** How many of the used rows are in sight, and how many there are. */
-  get shown() {
-    return this.#used;
-  }
-
+  /** How many rows are used. */
   get total() {
     return this.sheet.rowNumbers.filter((row) => this.sheet.isUsed(row)).length;
   }
@@ -74,7 +71,7 @@ export class RowOrder {
     if (this.isPlain) return;
     const bad = this.only.has("problems") ? this.store.rowsWithProblems(this.sheet.name) : null;
     const rows = this.sheet.rowNumbers.filter((row) => this.sheet.isUsed(row) && this.#passes(row) && (!bad || bad.has(row)));
-    this.#used = rows.length;
+    this.shown = rows.length;
     if (this.sort) this.#sortRows(rows);
     this.#rows = rows;
     this.#top = this.sheet.lastRow;

@@ -230,11 +230,7 @@ class GridView {
     const { only } = (isTable && this.grid.order) || { only: new Set() };
     const classes = sheet.name === "Items" ? [...CLASSES, ""].filter((key) => store.counts[key] || only.has(key)) : [];
     const chip = (key, css, label, text) => {
-      const click = () => {
-        if (!only.delete(key)) only.add(key);
-        this.reorder();
-        this.#drawChips();
-      };
+      const click = () => (only.delete(key) || only.add(key), this.reorder(), this.#drawChips());
       return html`<button type="button" class="sheet-chip ${css}" aria-pressed=${only.has(key)} title=${label} aria-label=${label} data-only=${key} @click=${click}>${text}</button>`;
     };
     const pale = store.isSimulating ? "pale" : "";

@@ -26,16 +26,13 @@ export function notice(text, { kind = "info", actions = [], key = text, lasting 
   shown.set(key, one);
   if (shown.size > MOST) [...shown.values()].find((other) => other.timer)?.close();
   const isError = kind === "error";
-  if (!lasting && !(isError && actions.length)) startTimer(one, node, isError ? ERROR_MS : actions.length ? WITH_ACTIONS_MS : SHOWN_MS);
-  return one;
-}
-
-/** A notice goes after a while, but not while somebody reads it. */
-function startTimer(one, node, time) {
-  const start = () => (one.timer = setTimeout(one.close, time));
+  if (lasting || (isError && actions.length)) return one;
+  const time = isError ? ERROR_MS : actions.length ? WITH_ACTIONS_MS : SHOWN_MS;
+  const start = () => (one.timer = setTimeout(one.close, time)); // but not while somebody reads it
   node.addEventListener("pointerenter", () => clearTimeout(one.timer));
   node.addEventListener("pointerleave", start);
   start();
+  return one;
 }
 
 /** Ask a question: the value of the choice, [label, value], of which the first is proposed; null where it was closed. */

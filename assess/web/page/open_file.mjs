@@ -55,7 +55,8 @@ async function openWorkbook(store, file) {
     }
     store.replaceBook(answer);
   } catch (error) {
-    const problems = (error.body?.problems ?? []).slice(0, 5).map((one) => [one.cell, one.message, one.fix].filter(Boolean).join(" "));
+    const line = (one) => [one.cell, one.message, one.fix].filter(Boolean).join(" ");
+    const problems = (error.body?.problems ?? []).slice(0, 5).map(line);
     const why = error.message || t("The server does not answer.");
     const more = problems.filter((one) => !why.includes(one));
     notice([t("{name} was not opened: {why}", { name: file.name, why }), ...more].join("\n"), { kind: "error" });

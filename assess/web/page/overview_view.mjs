@@ -119,8 +119,9 @@ class OverviewView {
     const counts = {};
     for (const one of rows) counts[one.live?.class ?? ""] = (counts[one.live?.class ?? ""] ?? 0) + one.n;
     const said = [...CLASSES, ""].filter((key) => counts[key]).map((key) => t("{word}: {n:,}", { word: describe(key).word, n: counts[key] })).join(", ");
-    const dot = ({ row: to, live }) => html`<span class="dot ${classStyle(live)}" data-row=${to} title=${[sheet.value(to, of), classText(live)].filter(Boolean).join(", ")}>${describe(live?.class).sign}</span>`;
-    const dots = (one) => Array.from({ length: one.n }, () => dot(one));
+    const title = (one) => [sheet.value(one.row, of), classText(one.live)].filter(Boolean).join(", ");
+    const dots = (one) => Array.from({ length: one.n }, () =>
+      html`<span class="dot ${classStyle(one.live)}" data-row=${one.row} title=${title(one)}>${describe(one.live?.class).sign}</span>`);
     const label = html`<b>${floor ? floor : floorName("")}</b>${name && name !== floor ? html` <span class="muted">${name}</span>` : nothing}<span class="unseen"> ${said}</span>`;
     return html`<div class="storey">
       <span class="storey-name">${row ? html`<button type="button" class="quiet" title=${t("Show on the plan")} @click=${() => this.#openPlan("Floors", row)}>${label}</button>` : label}</span>

@@ -56,10 +56,7 @@ export class ProblemsList {
   }
 
   #filter(severity, n) {
-    const click = () => {
-      if (!this.#hidden.delete(severity)) this.#hidden.add(severity);
-      this.draw();
-    };
+    const click = () => (this.#hidden.delete(severity) || this.#hidden.add(severity), this.draw());
     return html`<button type="button" class="problems-filter ${severity}" aria-pressed=${!this.#hidden.has(severity)} @click=${click}>${SIGNS[severity]} ${count[severity](n)}</button>`;
   }
 

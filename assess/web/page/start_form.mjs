@@ -33,7 +33,8 @@ export class StartForm {
     this.#begin = begin;
     this.#leave = leave;
     const codes = this.#offers.languages.map(([code]) => code);
-    Object.assign(this.#values, { use: offers.uses[0][0], language: codes.includes(language()) ? language() : codes[0] });
+    this.#values.use = offers.uses[0][0];
+    this.#values.language = codes.includes(language()) ? language() : codes[0];
     this.node.addEventListener("submit", (event) => (event.preventDefault(), this.#send("template")));
     this.#followUse();
   }

@@ -48,7 +48,8 @@ export class Tabs {
     this.#shown = key;
     before?.view?.hide?.();
     if (before) before.root.hidden = true;
-    const one = this.#views.get(key) ?? this.#add(tab);
+    if (!this.#views.has(key)) this.#views.set(key, this.#make(tab));
+    const one = this.#views.get(key);
     one.root.hidden = false;
     await one.ready;
     if (this.#shown === key) one.view?.show?.();
@@ -57,12 +58,12 @@ export class Tabs {
     for (const [, , load] of TABS) load().catch(() => {}); // it is explained where the view is asked for
   }
 
-  #add([key, label, load]) {
+  #make([key, label, load]) {
     const root = el("section", { class: "view", id: `view-${key}`, "aria-label": label() });
     this.main.append(root);
     const one = { root, view: null };
-    this.#views.set(key, one);
-    one.ready = load().then(({ createView }) => (one.view = createView(root, this.#store))).catch((error) => this.#explain(root, error));
+    const make = ({ createView }) => (one.view = createView(root, this.#store));
+    one.ready = load().then(make).catch((error) => this.#explain(root, error));
     return one;
   }
 
