@@ -175,7 +175,7 @@ export class PlanKeys {
     this.model.isHeld = true;
     const shift = ARROWS[event.key].map((one, i) => roundTo((this.#burst?.shift[i] ?? 0) + one * step, FINE));
     this.#burst = { rows, shift };
-    this.#preview(this.#poses());
+    this.select.preview(this.#poses());
     return true;
   }
 
@@ -187,20 +187,13 @@ export class PlanKeys {
     return pieces.map((one) => ({ ...one, x: moved(one.x, dx), y: moved(one.y, dy) }));
   }
 
-  #preview(poses) {
-    if (poses) this.pieces.preview(poses);
-    else this.pieces.endPreview();
-    this.scene.drawFalls();
-    this.select.showHandles();
-  }
-
   endBurst() {
     if (!this.#burst) return;
     const poses = this.#poses();
     this.#burst = null;
     this.edits.pose(poses.map(({ row, x, y }) => ({ row, x, y })), t("move"));
     this.model.release();
-    this.#preview(null);
+    this.select.preview([]);
     const [piece] = poses;
     if (piece) this.say(`${piece.item}: ${this.model.shownAt([piece.x, piece.y])}`);
   }

@@ -131,9 +131,8 @@ export class Picture extends Section {
       return html`<p>${text}</p>${canEdit ? this.#chooser(t("Add a picture…")) : nothing}`;
     }
     const fade = ({ target }) => {
-      this.scene.opacity = target.valueAsNumber;
       sessionStorage.setItem(KEPT, target.value);
-      this.scene.drawPicture();
+      this.scene.draw({ opacity: target.valueAsNumber });
     };
     return html`<label class="field"><span class="field-name">${t("Opacity")}</span>
       <input type="range" min="0" max="1" step="0.05" .value=${String(this.scene.opacity)} @input=${fade}></label>

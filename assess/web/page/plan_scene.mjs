@@ -64,7 +64,8 @@ export class Scene {
     const { scale } = this.viewport;
     this.hatch.setAttribute("patternTransform", `scale(${1 / scale})`);
     if (scale !== this.pieces.scale) {
-      this.pieces.zoom(scale);
+      this.pieces.scale = scale;
+      this.pieces.draw();
       this.drawRoutes();
     }
     this.viewport.svg.classList.toggle("far", scale < NAMED_FROM);
@@ -72,7 +73,9 @@ export class Scene {
     this.#drawGrid();
   }
 
-  draw() {
+  /** Draw all, with a wish: falls, opacity, showsRoutes. */
+  draw(wish = {}) {
+    Object.assign(this, wish);
     this.drawPicture();
     this.drawRoutes();
     this.pieces.draw();
@@ -239,12 +242,16 @@ class PieceLayer {
     }
     if (!pieces.has(this.active)) this.active = this.order()[0] ?? 0;
     this.#placeNames();
-    for (const piece of pieces.values()) this.#drawPiece(piece);
+    this.#drawPieces(pieces.keys());
     const named = { role: "listbox", "aria-multiselectable": "true", "aria-label": t("Pieces on floor {floor}", { floor }) };
     for (const [name, value] of Object.entries(named)) {
       if (pieces.size) node.setAttribute(name, value);
       else node.removeAttribute(name);
     }
+  }
+
+  #drawPieces(rows) {
+    for (const row of rows) if (this.model.pieces.has(row)) this.#drawPiece(this.model.pieces.get(row));
   }
 
   #drawPiece(piece) {
@@ -309,23 +316,13 @@ class PieceLayer {
     }
   }
 
-  zoom(scale) {
-    this.scale = scale;
-    this.draw();
-  }
-
   // ---- while dragged
 
-  /** Show pieces elsewhere than they stand: [{row, x, y, angle}]. */
+  /** Show pieces elsewhere than they stand, [{row, x, y, angle}]; all others where they do. */
   preview(poses) {
+    const rows = new Set([...this.#previews.keys(), ...poses.map((one) => one.row)]);
     this.#previews = new Map(poses.map((one) => [one.row, one]));
-    for (const { row } of poses) if (this.model.pieces.has(row)) this.#drawPiece(this.model.pieces.get(row));
-  }
-
-  endPreview() {
-    const rows = [...this.#previews.keys()];
-    this.#previews.clear();
-    for (const row of rows) if (this.model.pieces.has(row)) this.#drawPiece(this.model.pieces.get(row));
+    this.#drawPieces(rows);
   }
 
   /** Where a piece is shown. */
@@ -379,9 +376,11 @@ class PieceLayer {
 
   /** Selected pieces lie on top; focus survives, as the nodes that are moved past stay where they are. */
   select(rows) {
+    const before = [...this.selected, ...this.#besides];
     this.selected = new Set(rows);
-    if (this.model.pieces.has(rows[0])) this.active = rows[0];
-    this.draw();
+    if (this.model.pieces.has(rows[0])) this.activate(rows[0]);
+    this.#placeNames();
+    this.#drawPieces(new Set([...before, ...rows, ...this.#besides]));
     if (rows.length > RAISED_UP_TO) return;
     const nodes = rows.map((row) => this.#nodes.get(row)).filter((node) => node && !node.contains(document.activeElement));
     for (const node of nodes) if (node !== this.node.lastChild) this.node.append(node);

@@ -78,10 +78,8 @@ export class SelectTool {
     cancelAnimationFrame(gesture.frame);
     this.ring = null;
     this.scene.sketch();
-    this.pieces.endPreview();
     this.scene.drawPicture();
-    this.scene.drawFalls();
-    this.showHandles();
+    this.preview([]);
     if (gesture.isMoved) this.model.release();
   }
 
@@ -110,7 +108,7 @@ export class SelectTool {
       drag: (point, { at: [x, y] }) => {
         const snapped = this.#snap(held, [point.at[0] - x, point.at[1] - y], lines, point.alt);
         shift = snapped.shift;
-        this.#preview(poses.map((one) => this.#shifted(one, shift)));
+        this.preview(poses.map((one) => this.#shifted(one, shift)));
         const now = this.#shifted(held, shift);
         this.scene.sketch([], [{ at: [now.x, now.y], text: this.model.shownAt([now.x, now.y]) }], snapped.guides);
       },
@@ -123,7 +121,8 @@ export class SelectTool {
     };
   }
 
-  #preview(poses) {
+  /** Show pieces as they would stand, with what they cover. */
+  preview(poses) {
     this.pieces.preview(poses);
     this.scene.drawFalls();
     this.showHandles();
@@ -243,7 +242,7 @@ export class SelectTool {
     return {
       drag: (point) => {
         angle = wholeAngle(direction(centre, point.at), point.alt || !this.snaps ? 1 : TURN_STEP);
-        this.#preview([{ ...piece, angle }]);
+        this.preview([{ ...piece, angle }]);
         this.scene.sketch([], [{ at: centre, text: `${angle}°` }]);
       },
       drop: () => {

@@ -327,14 +327,6 @@ function toolbar({ model, store, scene, select, tools, currentTool, canEdit, set
     target.setAttribute("aria-invalid", String(!(metres > 0) && target.value.trim() !== ""));
     for (const name of WITH_WIDTH) tools[name].width = metres > 0 ? metres : null;
   };
-  const showFalls = ({ target }) => {
-    scene.falls = target.value;
-    scene.drawFalls();
-  };
-  const showRoutes = ({ target }) => {
-    scene.showsRoutes = target.checked;
-    scene.drawRoutes();
-  };
   const falls = [["selected", t("selected")], ["all", t("all")], ["none", t("none")]];
   return html`<div class="plan-toolbar" role="toolbar" aria-label=${t("Settings of the plan")} tabindex="-1">
     <div class="plan-floors">${floorChoice(model, canEdit, setFloor)}</div>
@@ -342,8 +334,8 @@ function toolbar({ model, store, scene, select, tools, currentTool, canEdit, set
       <label class="check editing-only" title=${t("Pieces snap to walls and to each other; Alt switches it off while dragging.")}><input type="checkbox" checked
         @change=${({ target }) => (select.snaps = target.checked)}>${t("Snap")}</label>
       <label class="inline" title=${t("The floor that a piece may cover when it falls")}>${t("Show fall zones:")}
-        <select @change=${showFalls}>${falls.map(([value, text]) => html`<option value=${value}>${text}</option>`)}</select></label>
-      <label class="check"><input type="checkbox" checked @change=${showRoutes}>${t("Show routes")}</label></div>
+        <select @change=${({ target }) => scene.draw({ falls: target.value })}>${falls.map(([value, text]) => html`<option value=${value}>${text}</option>`)}</select></label>
+      <label class="check"><input type="checkbox" checked @change=${({ target }) => scene.draw({ showsRoutes: target.checked })}>${t("Show routes")}</label></div>
     <div class="plan-group editing-only">
       <label class="inline" ?hidden=${!WITH_WIDTH.includes(tool.name)} title=${t("It becomes the clear width of the ways that are drawn through it.")}>${t("Width")}
         <input class="door-width" inputmode="decimal" autocomplete="off" aria-label=${t("Width of the door or exit")} placeholder=${number(DOOR / factor, 1)}
