@@ -318,10 +318,15 @@ class Runs:
         with self._lock:
             return self._every[-1] if self._every else None
 
+    def find_running(self) -> Run | None:
+        """Return the one that is at work."""
+        with self._lock:
+            return next((one for one in self._every if one.is_running), None)
+
     def begin(self, book: "Book", body: Mapping[str, Any]) -> None:
         """Begin a run of the workbook as it is; InputError for a wrong option or workbook, or no free slot."""
         with self._lock:
-            if self._every and self._every[-1].is_running:
+            if self.find_running() is not None:
                 raise RequestError(RUNNING, CONFLICT)
             folder = self._parent / f"{PREFIX}{secrets.token_hex(8)}"
             folder.mkdir(mode=0o700)
@@ -351,7 +356,7 @@ class Runs:
 
         with self._lock:
             run = self.find(name)
-            if any(one.is_running and one is not run for one in self._every):
+            if self.find_running() not in (None, run):
                 raise RequestError(RUNNING, CONFLICT)
             check_folder(run.folder / OUT, formats)
             run.make(formats, self._slots)

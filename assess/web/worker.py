@@ -168,8 +168,8 @@ class Worker:
 
     def _is_idle(self, _call: Call) -> dict[str, Any]:
         """Return whether nothing runs that would be lost."""
-        run, reading = self.session.runs.latest, self.session.reading
-        return {"idle": not (run and run.is_running) and not (reading and reading.state == "running")}
+        reading = self.session.reading
+        return {"idle": self.session.runs.find_running() is None and not (reading and reading.state == "running")}
 
     def _end(self, _call: Call) -> dict[str, Any]:
         """Save, or keep changes that cannot be saved; return the fields of `Ending`."""
