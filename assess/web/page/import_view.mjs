@@ -24,7 +24,7 @@ class ImportView {
   constructor(root, store) {
     this.#root = root;
     this.#store = store;
-    imports.addEventListener("change", () => this.#isShown && this.#draw());
+    imports.addEventListener("change", () => this.#isShown && this.#offers && this.#draw());
   }
 
   async show() {
