@@ -188,9 +188,9 @@ def _compute(
 
 def build_results(
     assessment: Assessment, *, figures: bool = True, series_folder: "str | Path | None" = None,
-    progress: Progress = SILENT, routes: RouteTables | None = None,
+    progress: Progress = SILENT, routes: RouteTables | None = None, kept: "KeptRoutes | None" = None,
 ) -> Results:  # fmt: skip
-    """Return the tables of a run; `routes` where they are known; other parameters and errors are those of `run`."""
+    """Return the tables of a run; `routes` where they are known, `kept` their rows; the rest is as of `run`."""
     demands, is_temporary = list_demands(assessment), figures and series_folder is None
     if series_folder is not None:
         folder = Path(series_folder)
@@ -201,7 +201,7 @@ def build_results(
         found = evaluate_route_tables(assessment, progress) if routes is None else routes
         results = build_rows(assessment, demands, folder, found)
         schedule = build_schedule(
-            results, assessment.inventory, lambda held: evaluate_route_tables(assessment, progress, held)
+            results, assessment.inventory, lambda held: evaluate_route_tables(assessment, progress, held, kept)
         )
         return replace(results, schedule=schedule)
 

@@ -57,6 +57,12 @@ class KeptRoutes:
         self._rows: dict[Hashable, Any] = {}
         self._now: dict[Hashable, Any] = {}
 
+    def copy(self) -> "KeptRoutes":
+        """Return one that knows the same rows, for an evaluation besides the next one."""
+        found = KeptRoutes()
+        found._of, found._now = self._of, {**self._now}
+        return found
+
     def begin(self, of: Hashable) -> None:
         """Begin an evaluation; `of` is what all rows rest on. What the last one did not ask for is forgotten."""
         self._rows, self._now, self._of = self._now if of == self._of else {}, {}, of

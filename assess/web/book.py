@@ -19,7 +19,7 @@ from assess.web.columns import PageSheet, find_sheets, find_units, show
 from assess.web.disk_file import ChangedOutsideError, DiskFile, find_hash
 from assess.web.file_names import FILES, add_file, list_missing
 from assess.web.journal import Journal, list_saved
-from assess.web.request_errors import CONFLICT, UNUSABLE, RequestError
+from assess.web.request_errors import CONFLICT, UNAVAILABLE, UNUSABLE, RequestError
 from assess.web.simulating import Simulator
 from assess.web.snapshot import Snapshot
 from assess.workbook.kept_files import KeptFiles
@@ -110,10 +110,14 @@ class Book:
 
     def _note(self, *step: Any) -> None:
         if self._journal is not None:
-            self._journal.note(*step)
+            try:
+                self._journal.note(*step)
+            except OSError as error:
+                text = fill("A file cannot be used: {why}.", why=error.strerror or str(error))
+                raise RequestError(text, UNAVAILABLE) from None
 
     def _note_save(self, what: str, version: int, digest: str) -> None:
-        with self._lock, suppress(OSError):  # without it, a kill has the file be called changed by another program
+        with self._lock, suppress(RequestError):  # without it, a kill has the file be called changed by another program
             self._note(what, version, digest)
 
     def _take_in(self, data: bytes) -> None:
@@ -401,8 +405,8 @@ class Book:
         """
         with self._lock:
             add_file(name, data, self._find_missing(anew=True), self.folder)
-            self._note_file()
             self._note("file")
+            self._note_file()
 
     def _note_file(self) -> None:
         self.version += 1

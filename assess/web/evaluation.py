@@ -26,6 +26,7 @@ from assess.workbook.names import key
 from assess.workbook.parse import Row, Tables, first_row
 
 if TYPE_CHECKING:
+    from assess.routes.evaluate import KeptRoutes
     from assess.web.snapshot import Snapshot
 
 AS_RUN = Settings()
@@ -88,7 +89,7 @@ def tabulate_routes(snapshot: "Snapshot", found: Evaluation, settings: Settings 
     """Return the states of routes of an evaluation, once for all who ask: only of what has changed since the last."""
     if found.assessment is None or not found.assessment.obstructions:
         return RouteTables(risk=0.0)
-    from assess.routes.evaluate import KeptRoutes
+    from assess.routes.evaluate import KeptRoutes  # it needs geometry, which a workbook without routes does not
 
     assessment, simulator, kind = found.assessment, snapshot.simulator, settings == AS_RUN
 
@@ -98,6 +99,13 @@ def tabulate_routes(snapshot: "Snapshot", found: Evaluation, settings: Settings 
             return evaluate_route_tables(assessment, SILENT, kept=kept)
 
     return snapshot.keep(("route tables", settings), make, found.arrived)
+
+
+def copy_kept(snapshot: "Snapshot", settings: Settings) -> "KeptRoutes | None":
+    """Return the rows of routes as they were tabulated last, for what would come of them with pieces held."""
+    with snapshot.simulator.routes_lock:
+        kept = snapshot.simulator.routes.get(settings == AS_RUN)
+        return None if kept is None else kept.copy()
 
 
 def _find(snapshot: "Snapshot", settings: Settings, routes: bool) -> Evaluation:

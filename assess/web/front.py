@@ -77,7 +77,7 @@ class Front:
             return answer_asset(found, request.headers, request.query_params.get("v", ""))
         if path not in POLLED or request.method not in READING:
             user.seen = time.monotonic()
-        elif (user.is_ending or not user.is_awake) and path in user.last:
+        elif (user.is_ending or user.is_asleep) and path in user.last:
             return _respond(user.last[path])
         async with _turn(user, path):
             call = await self._receive(request, user)
@@ -117,7 +117,7 @@ class Front:
             link = user.link
             if link is None or link.is_gone:
                 await self._make_place(user)
-                user.is_coming = True
+                user.is_coming, user.is_asleep = True, False
                 try:
                     link = user.link = await user.run(user.start, user.folder)
                 finally:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from assess.delivery.folders import FolderLock, is_ours, locked
+from assess.errors import OutputError
 from assess.web.limits import PREFIX
 
 HEAD = "book.json"
@@ -34,14 +35,19 @@ class Journal:
         """Begin with a workbook as it was opened, or read again: its bytes, the folder of its files, and what it is."""
         name, before = secrets.token_hex(8), self.read_head()
         opened, steps = self._folder / f"opened-{name}", self._folder / f"steps-{name}"
-        opened.write_bytes(data)
-        steps.touch()
         own = self._folder.resolve()
         place = str(files.relative_to(own) if files.is_relative_to(own) else files)
         head = {**book, "files": place, "opened": opened.name, "steps": steps.name, "is_own": self._is_own}
         part = self._folder / f"{HEAD}.part"
-        part.write_text(json.dumps(head), encoding="utf-8")
-        part.replace(self._folder / HEAD)
+        try:
+            opened.write_bytes(data)
+            steps.touch()
+            part.write_text(json.dumps(head), encoding="utf-8")
+            part.replace(self._folder / HEAD)
+        except OSError:  # the steps of the workbook before would not fit what comes now
+            self._remove(head)
+            self.end()
+            raise
         self._steps = steps
         self._remove(before)
 
@@ -98,8 +104,12 @@ def set_aside(path: Path | None) -> None:
     """
     for session, head in _find_left(PREFIX):
         with suppress(FileNotFoundError, ValueError):  # it is no journal
-            with locked(session):
-                pass
+            try:
+                with locked(session):
+                    pass
+            except OutputError:
+                if path is not None and _is_of(head, path):
+                    raise
             if _is_of(head, path) or _is_unsaved(session, head):
                 session.rename(Path(tempfile.mkdtemp(prefix=TAKEN)) / session.name)
 
@@ -110,7 +120,8 @@ def put_back(path: Path | None, folder: Path) -> bool:
     That of a workbook of the disk, or for None of one that was held.
     """
     left = ((session / head["steps"], session) for session, head in _find_left(TAKEN) if _is_of(head, path))
-    for _, session in sorted(((steps.stat().st_mtime_ns, session) for steps, session in left), reverse=True):
+    known = ((steps.stat().st_mtime_ns, session) for steps, session in left if steps.is_file())
+    for _, session in sorted(known, reverse=True):
         lock = FolderLock(session.parent)
         is_free = lock.take() and session.is_dir()
         if is_free:

@@ -21,7 +21,7 @@ from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.routes.evaluate import KeptRoutes
 from assess.settings import Settings
-from assess.web.evaluation import AS_RUN, Evaluation, evaluate, list_floors, tabulate_routes
+from assess.web.evaluation import AS_RUN, Evaluation, copy_kept, evaluate, list_floors, tabulate_routes
 from assess.web.live import describe_failure
 from assess.web.route_states import describe_states, describe_unknown
 from assess.workbook.names import key
@@ -59,13 +59,13 @@ def describe_overview(snapshot: "Snapshot") -> dict[str, Any]:
     }  # fmt: skip
     if assessment is None:
         return answer
-    routes = tabulate_routes(snapshot, found, settings)
+    routes, kept = tabulate_routes(snapshot, found, settings), copy_kept(snapshot, settings)
     results = snapshot.keep(
-        ("results", settings), lambda: build_results(assessment, figures=False, routes=routes), found.arrived
+        ("results", settings), lambda: build_results(assessment, figures=False, routes=routes, kept=kept), found.arrived
     )
     left: Sequence[Mapping[str, int] | None] = ()
     if settings == AS_RUN:
-        left = snapshot.keep("left", lambda: _count_left(snapshot, assessment, results), found.arrived)
+        left = snapshot.keep("left", lambda: _count_left(assessment, results, kept), found.arrived)
     return {**answer, "basis": results.main_basis, **describe_results(results, left)}
 
 
@@ -108,17 +108,16 @@ def _describe_piece(one: ItemResult) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _count_left(snapshot: "Snapshot", assessment: Assessment, results: Results) -> list[dict[str, int] | None]:
+def _count_left(
+    assessment: Assessment, results: Results, kept: KeptRoutes | None
+) -> list[dict[str, int] | None]:  # fmt: skip
     """Return the routes by state once the first entry of what to fix is done, the first two, and so on."""
     reaching = {near.item_index for segment in assessment.obstructions for near in segment.pieces}
     held, found, left = set[int](), results.route_tables, list[dict[str, int] | None]()
-    simulator = snapshot.simulator
-    for at, entry in enumerate(results.schedule.rows[:MOST]):
+    for entry in results.schedule.rows[:MOST]:
         held.update(entry.item_indices)
         if reaching & {*entry.item_indices}:
-            with simulator.routes_lock:
-                kept = simulator.routes.setdefault(("left", at), KeptRoutes())
-                found = evaluate_route_tables(assessment, SILENT, held, kept)
+            found = evaluate_route_tables(assessment, SILENT, held, kept)
         left.append(_count(one.state.name.lower() for one in found.routes) if found.routes else None)
     return left
 

@@ -43,7 +43,8 @@ T = TypeVar("T")
 class User:
     """The session of one user; `key` is the value of its cookie.
 
-    * `link`: its process, None until something is asked of it; `is_coming`, `is_ending`: it is being started, or ended.
+    * `link`: its process, None until something is asked of it; `is_coming`, `is_ending`: it is being started, or ended;
+      `is_asleep`: it was ended, and not killed.
     * `language`: that of its workbook.
     * `seen`: when its user last asked for anything.
     * `in_work`, `at_once`: places of requests, and of those that take no time; `waiting`: how many want one.
@@ -55,7 +56,7 @@ class User:
     def __init__(self, folder: Path, start: Callable[[Path], Link], *, stays: bool = False) -> None:
         self.key, self.folder, self.start, self.stays = secrets.token_urlsafe(32), folder, start, stays
         self.link: Link | None = None
-        self.is_coming = self.is_ending = False
+        self.is_coming = self.is_ending = self.is_asleep = False
         self.busy, self.last = 0, dict[str, Reply]()
         self.language, self.seen = "", time.monotonic()
         self.in_work, self.at_once = asyncio.Semaphore(IN_WORK), asyncio.Semaphore(1)
@@ -90,7 +91,7 @@ class User:
         if self.link is not None:
             self.is_ending = True
             self.link.close()  # it has its place until then
-            self.is_ending = False
+            self.is_ending, self.is_asleep = False, True
 
     def close(self, *, forget: bool = True) -> None:
         """End its process, and remove its folder unless that stays for a later server."""

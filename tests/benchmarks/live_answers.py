@@ -112,7 +112,9 @@ def _compare(name: str, path: Path, settings: Settings) -> str:
     found = []
     for at in range(ROUNDS + 1):
         reading, answer = _answer(book, view, 100 + at)
-        assert settings == UNVERIFIED or evaluate(book.snapshot(), routes=False).is_simulated
+        if settings != UNVERIFIED:  # where the answer does not have it yet, until the next one may
+            answer += 1e3 * timed(lambda: _simulate(book))
+            assert evaluate(book.snapshot(), routes=False).is_simulated
         found.append((answer, reading))
     anew = statistics.median([1e3 * timed(lambda: _anew(data, path.parent, settings)) for _ in range(3)])
     own, reading = (statistics.median(times) for times in zip(*found[1:], strict=True))

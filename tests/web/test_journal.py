@@ -12,19 +12,21 @@ from threading import Event
 
 import pytest
 from openpyxl import load_workbook
+from starlette.requests import Request
 
 from assess.bim.import_workbook import ImportedBuilding
+from assess.delivery import folders
 from assess.delivery.folders import FolderLock, sweep
-from assess.errors import AssessError
+from assess.errors import AssessError, OutputError
 from assess.i18n import fill
 from assess.web import importing
 from assess.web.book import Book, ChangedOutsideError
 from assess.web.endpoints import answer
-from assess.web.frames import Call
+from assess.web.frames import Call, Reply
 from assess.web.front import Front
 from assess.web.journal import TAKEN, Journal, put_back, set_aside
 from assess.web.limits import HOSTED, OWN, PREFIX, Limits
-from assess.web.request_errors import RequestError
+from assess.web.request_errors import UNAVAILABLE, RequestError
 from assess.web.server import Place, Server, bind
 from assess.web.sessions import Session
 from assess.web.users import User
@@ -86,8 +88,9 @@ def test_a_step_that_cannot_be_written_is_not_taken_and_leaves_nothing_behind(bo
         lambda: book.change_rows(book.version, "Items", "delete", 3, 1),
     )  # fmt: skip
     for act in acts:
-        with pytest.raises(OSError, match="No space left"):
+        with pytest.raises(RequestError, match="No space left") as raised:
             act()
+        assert raised.value.status == UNAVAILABLE, "the page sends it again, and reads nothing anew"
         assert (book.state(), _read(book)) == (before, 151)
     monkeypatch.undo()
     book.redo(book.version)
@@ -183,13 +186,41 @@ def test_what_another_program_wrote_is_neither_overwritten_nor_taken_for_ours(bo
     assert book.path.read_bytes() == data
 
 
+def _refuse(*_given, **_named):
+    raise OSError(28, "No space left")
+
+
+def test_a_file_that_is_read_again_without_room_for_it_is_not_mixed_with_earlier_steps(book, folder, monkeypatch):
+    edit(book, (*HEIGHT, 151))
+    book.save()
+    theirs = Book.open_disk(book.path)
+    edit(theirs, (*HEIGHT, 99))
+    theirs.save()
+    with monkeypatch.context() as context:
+        context.setattr(Path, "touch", _refuse)
+        book.follow_outside()
+    assert (_read(book), list(folder.iterdir())) == (99, [])
+    edit(book, (*HEIGHT, 152))
+    book.save()
+    assert (_read_bytes(book.path.read_bytes()), list(folder.iterdir())) == (152, [])
+
+
+def test_a_file_beside_the_workbook_that_cannot_be_noted_makes_no_version(book, folder, monkeypatch):
+    edit(book, ("Floors", 2, "record_x", "a.smc"))
+    with monkeypatch.context() as context:
+        context.setattr(Journal, "note", _refuse)
+        with pytest.raises(RequestError, match="No space left"):
+            book.add_file("a.smc", b"x")
+    edit(book, (*HEIGHT, 151))
+    book.save()
+    edit(book, (*HEIGHT, 152))
+    again = Book.restore(Journal(folder))
+    assert (again.version, again.state()["unsaved"], _read(again)) == (book.version, True, 152)
+
+
 def test_a_journal_that_cannot_be_written_does_not_keep_the_file_from_being_saved(book, monkeypatch):
     edit(book, (*HEIGHT, 151))
-
-    def refuse(_self, *_step):
-        raise OSError(28, "No space left")
-
-    monkeypatch.setattr(Journal, "note", refuse)
+    monkeypatch.setattr(Journal, "note", _refuse)
     book.save()
     assert (book.state()["unsaved"], _read_bytes(book.path.read_bytes())) == (False, 151)
 
@@ -262,6 +293,39 @@ def test_a_process_on_its_way_has_its_place(tmp_path):
 
     asyncio.run(come())
     assert started == ["ann"]
+
+
+def test_what_a_page_asks_by_itself_wakes_a_process_that_was_killed_and_none_that_sleeps(folder):
+    class Link:
+        is_gone = False
+
+        def ask(self, call):
+            return Reply(200, [], json.dumps(call.path).encode())
+
+        def close(self):
+            self.is_gone = True
+
+    started = []
+    user = User(folder, lambda _folder: started.append(Link()) or started[-1])
+    front = Front(Limits(), lambda: [user])
+
+    async def empty():
+        return {"type": "http.request", "body": b"", "more_body": False}
+
+    async def ask():
+        scope = {"type": "http", "method": "GET", "path": "/api/state", "headers": [], "query_string": b""}
+        return await front._answer(Request(scope, empty), user)
+
+    async def come():
+        await ask()
+        started[-1].is_gone = True  # killed
+        await ask()
+        assert len(started) == 2
+        user._end()
+        await ask()
+        assert len(started) == 2
+
+    asyncio.run(come())
 
 
 def test_bodies_of_requests_that_a_kill_has_left_are_removed_at_the_start(folder):
@@ -357,6 +421,32 @@ def test_all_that_killed_servers_have_left_unsaved_waits_until_it_is_opened(tmp_
     assert [take(paths[0]) for _ in range(3)] == [152, 151, None]
     assert [take(paths[1]), take(paths[1]), take(paths[2])] == [153, None, None]
     assert list(temporary.glob(f"{TAKEN}*")) == []
+
+
+def test_a_process_of_a_killed_server_that_does_not_end_keeps_only_its_own_workbook(tmp_path, temporary, monkeypatch):
+    monkeypatch.setattr(folders, "PATIENCE", 0.0)
+    path = write(tmp_path / "a.xlsx")
+    busy = FolderLock(_leave(temporary, Book.open_disk(path), 151))
+    assert busy.take()
+    with pytest.raises(OutputError, match="in use"):
+        set_aside(path)
+    set_aside(write(tmp_path / "b.xlsx"))
+    sweep(temporary, PREFIX)
+    busy.release()
+    (folder := tmp_path / "new").mkdir()
+    assert put_back(path, folder)
+    assert _read(Book.restore(Journal(folder))) == 151
+
+
+def test_what_waits_and_has_lost_its_steps_keeps_no_workbook_closed(tmp_path, temporary):
+    path = write(tmp_path / "a.xlsx")
+    _leave(temporary, Book.open_disk(path), 151)
+    set_aside(None)
+    for steps in temporary.glob(f"{TAKEN}*/*/steps-*"):
+        steps.unlink()
+    (folder := tmp_path / "new").mkdir()
+    assert not put_back(path, folder)
+    assert folder.is_dir()
 
 
 # ---------------------------------------------------------------- building models

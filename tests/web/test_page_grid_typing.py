@@ -77,6 +77,20 @@ def test_a_bad_value_is_marked_in_its_cell_and_other_rows_keep_their_classes(sma
     expect(small.cell(CLASS, 3)).to_contain_text(re.compile("low|medium|high"))
 
 
+def test_a_cell_typed_again_while_its_first_answer_is_missing(small):
+    def lose(route):
+        route.fetch()
+        route.abort()
+
+    small.page.route("**/api/edit", lose, times=1)
+    small.select("Description", 2).type("first", "<Enter>")
+    small.select("Description", 2).type("second", "<Enter>")
+    small.settle()
+    assert small.values("Items", "description")[2] == "second"
+    expect(small.cell("Description", 2)).to_have_text("second")
+    expect(small.page.locator(".notice").filter(has_text="another window")).to_have_count(0)
+
+
 def test_lists_filter_while_one_types_and_an_input_method_composes(small):
     small.select("Axis", 2).type("<Alt+ArrowDown>")
     options = small.options

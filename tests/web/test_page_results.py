@@ -83,6 +83,13 @@ def test_one_button_a_file_the_report_in_its_own_tab_and_two_runs_compared(page,
     expect(compared).to_have_count(0)
 
 
+REFUSED = """async () => {
+    const { jobs } = await import("/job.mjs");
+    return jobs.post("/api/job", { formats: ["csv"] }).then(() => 200, (error) => error.status);
+}"""
+"""Ask for another run meanwhile."""
+
+
 def test_a_run_is_found_again_and_cancelled_and_goes_by_its_settings(page, served_here, tmp_path):
     page = open_results(page, served_here(write_one_floor(tmp_path / "office.xlsx", height=12.0)))
     page.get_by_text("Settings", exact=True).click()
@@ -90,6 +97,9 @@ def test_a_run_is_found_again_and_cancelled_and_goes_by_its_settings(page, serve
     page.get_by_label("Scale of the shaking").fill("2")
     make(page, PDF)
     expect(page.get_by_role("progressbar", name="Progress")).to_be_visible()
+    assert page.evaluate(REFUSED) == 409
+    with page.expect_request(lambda asked: asked.method == "GET" and asked.url.endswith("/api/job")):
+        pass  # how far it is is asked on
     page.reload()
     page.get_by_role("button", name="Cancel").click()
     expect(page.get_by_text("was cancelled")).to_be_visible()

@@ -66,7 +66,12 @@ class Watched extends EventTarget {
 
   async post(path, body) {
     this.forgetAsked();
-    this.follow(await post(path, body));
+    try {
+      this.follow(await post(path, body));
+    } catch (error) {
+      if (this.isRunning) this.lookLater(this.everyMs);
+      throw error;
+    }
   }
 
   tell() {

@@ -139,13 +139,17 @@ function missingFiles(store) {
   const missing = store.book?.missing ?? [];
   const row = ({ name, kind, cells }) => html`<tr><th scope="row">${name}</th><td>${USES[kind]?.() ?? kind}</td>
     <td>${cells.slice(0, NAMED).map((cell) => cellLink(store, cell))}${cells.length > NAMED ? ` ${tn("and {n} more", "and {n} more", cells.length - NAMED)}` : ""}</td></tr>`;
+  const take = ({ target }) => {
+    addFiles(store, [...target.files]);
+    target.value = ""; // the same one may be chosen again
+  };
   const list = () => html`<p>${t("These files were not found next to the workbook. Without them the floors, pictures or records that they hold are left out.")}</p>
     <div class="scroll-x"><table class="plain">
       <thead><tr>${[t("File"), t("What it is for"), t("Named in")].map((text) => html`<th scope="col">${text}</th>`)}</tr></thead>
       <tbody>${missing.map(row)}</tbody></table></div>
     <div class="drop"><p>${t("Drop the files here, or anywhere on the page. Each is found by its name.")}</p>
       <button type="button" class="primary" @click=${() => dialog.querySelector("input").click()}>${t("Choose files…")}</button>
-      <input type="file" multiple class="unseen" tabindex="-1" aria-label=${t("Choose files")} @change=${({ target }) => addFiles(store, [...target.files])}></div>`;
+      <input type="file" multiple class="unseen" tabindex="-1" aria-label=${t("Choose files")} @change=${take}></div>`;
   return html`<h2 id="files-title">${t("Files that the workbook names")}</h2>
     ${missing.length ? list() : html`<p>${t("Nothing is missing.")}</p>`}
     <div class="buttons"><button type="button" @click=${() => dialog.close()}>${t("Close")}</button></div>`;

@@ -125,7 +125,7 @@ class Store extends EventTarget {
     return new Promise((resolve) => {
       const [id, keys] = [newId(), new Set(edits.map((cell) => key(...cell)))];
       const last = this.#queue.at(-1);
-      const isSame = last && !last.isSent && !last.path && !request.path && last.label === label &&
+      const isSame = last && !last.wasSent && !last.path && !request.path && last.label === label &&
         last.keys.size === keys.size && [...keys].every((one) => last.keys.has(one));
       if (isSame) {
         const values = new Map(edits.map((cell) => [key(...cell), cell]));
@@ -148,7 +148,7 @@ class Store extends EventTarget {
     while (this.#queue.length && !this.#stopped) {
       const group = this.#queue[0];
       const book = this.#books;
-      group.isSent = true;
+      group.isSent = group.wasSent = true;
       this.#tell("state");
       try {
         const { version, server } = this.state;
