@@ -305,8 +305,15 @@ def test_what_a_page_asks_by_itself_wakes_a_process_that_was_killed_and_none_tha
         def close(self):
             self.is_gone = True
 
+        kill = close
+
     started = []
-    user = User(folder, lambda _folder: started.append(Link()) or started[-1])
+
+    def start(_folder):
+        started.append(Link())
+        return started[-1]
+
+    user = User(folder, start)
     front = Front(Limits(), lambda: [user])
 
     async def empty():
