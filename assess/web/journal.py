@@ -109,7 +109,10 @@ def set_aside(path: Path | None) -> None:
                     pass
             except OutputError:
                 if path is not None and _is_of(head, path):
-                    raise
+                    raise OutputError.about(
+                        "{path} is still being saved by an assess open that was killed. Try again in a minute.",
+                        path=path,
+                    ) from None
             if _is_of(head, path) or _is_unsaved(session, head):
                 session.rename(Path(tempfile.mkdtemp(prefix=TAKEN)) / session.name)
 

@@ -104,6 +104,9 @@ def test_files_are_made_of_a_run_when_they_are_asked_for_and_it_is_old_once_the_
         shares.append(now["share"])
         return now
 
+    writing = wait_until(look, lambda now: now["label"] == "Writing report.html" or now["state"] != "running")
+    assert writing["label"] == "Writing report.html"
+    assert writing["seconds_left"] >= 1
     again = wait_until(look, lambda now: now["state"] != "running")
     assert shares == sorted(shares), "it never begins again"
     assert again["id"] == job["id"]

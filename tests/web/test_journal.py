@@ -435,7 +435,7 @@ def test_a_process_of_a_killed_server_that_does_not_end_keeps_only_its_own_workb
     path = write(tmp_path / "a.xlsx")
     busy = FolderLock(_leave(temporary, Book.open_disk(path), 151))
     assert busy.take()
-    with pytest.raises(OutputError, match="in use"):
+    with pytest.raises(OutputError, match="xlsx is still being saved"):
         set_aside(path)
     set_aside(write(tmp_path / "b.xlsx"))
     sweep(temporary, PREFIX)

@@ -173,3 +173,15 @@ def test_users_find_their_work_again_after_the_server_was_killed_or_their_proces
     assert (status, "gone" in err) == (0, False)
     with suppress(HTTPException, OSError):
         ann.get("/")
+
+
+def test_an_idle_process_ends_where_memory_is_short_and_its_workbook_is_there_again(folders):
+    options = [*OPTIONS, "--no-browser", "--port", "0", *_limit(total=1)]
+    server = start(*options, cwd=folders / "home", temporary=folders / "tmp")
+    ann, _ = _come(server, "ann")
+    assert ann.send("/api/upload", "w.xlsx", write(folders / "w.xlsx").read_bytes()).status == 200
+    place = _place(ann)
+    _edit(ann, place, 166)
+    wait_until(lambda: find_worker(server, WORKER), lambda found: not found)
+    assert _value(ann, place) == 166
+    assert server.stop()[0] == 0
