@@ -20,7 +20,7 @@ from assess.model import ANCHORED, AXES, IMPORTANCE, SIZES_FROM
 from assess.results import BASES, BRANCHES, ItemResult, ItemRow, Results
 from assess.risk import RiskClass
 from assess.route_results import Chance, PieceRef, RoomRow, RouteRow, SegmentRow
-from assess.schedule_results import ScheduleRow, State, WorkRow
+from assess.schedule_results import PHASES, PhaseRow, ScheduleRow, State, WorkRow
 from assess.table import DATA, EVERYWHERE, FILES, Field, Kind, Table, Where
 
 
@@ -105,8 +105,9 @@ ADOPTED_FIELDS = (
         help='Key of the method whose value it is; "" where the piece cannot rock.'),
     _adopted("basis", fill("Basis"), "text", choices=BASES, help="`simulated`; `formula`: not simulated; "
         "`unconfirmed`: the formula's class, as the motions of a simulation that gave a lower one may be too weak; "
-        "or `cannot rock`: too stocky, or not even the strongest motion that may be drawn can start it. Counts, "
-        "lists and sums never mix the first three; the last is low, and counts with those of the run."),
+        "`cannot rock`: too stocky, or not even the strongest motion that may be drawn can start it; or `rolls`: on "
+        "castors, which no method covers, and its chance is that of a piece without them. Counts, lists and sums never "
+        "mix them; but what cannot rock is low, and counts with those of the run."),
     _adopted("probability", fill("Chance of overturning"), "share", format="0.0%", short=fill("Chance"),
         shows=DATA | {"pieces", "risky"}),
     _adopted("low", fill("Low"), "share", is_optional=True, format="0.0%",
@@ -201,6 +202,8 @@ PIECE_FIELDS = (
     *SLIDING_FIELDS,
     _of_item("against_wall", fill("Against wall"), kind="flag", is_optional=True, width=8,
         help="Whether a long side stands against a wall; null: not known."),
+    _of_item("mobile", fill("Mobile"), kind="flag", is_optional=True, width=8,
+        help="Whether it stands on castors, its type's where its own is blank; null: not known."),
     _of_item("falls_toward_deg", fill("Falls toward"), kind="number", unit="deg", is_optional=True, shows=DATA,
         help="Direction in which a piece against a wall falls, anticlockwise from X; null: it may fall either way."),
     Field(key="one_sided_chance", source="governing.one_sided", label=fill("Chance with a wall at its back"),
@@ -453,6 +456,8 @@ WORK_FIELDS = (
     _work("pieces", "count", fill("Pieces"), width=7, help="How many pieces they are, quantities counted."),
     _work("detail", label=fill("Detail"), width=20, choices=tuple(DETAILS),
         help="A generic way to fix them: screening, not design."),
+    _work("like", choices=tuple(DETAILS),
+        help="The detail whose forces and fixings they are: of an anchor to check or complete that of its type."),
     _force("tension_kn", fill("Tension at PFA"), fill("T at PFA"), help="What the fixings of each piece carry "
         "together: at the bracket, or, where it is fixed at its base, at the far edge of the base, on the lever of "
         "its breadth."),
@@ -464,6 +469,9 @@ WORK_FIELDS = (
         help="Of one piece, by the larger of the tensions at 84 % and by the code over the printed capacity of one."),
     _work("fixings_are_least", "flag", source="is_least",
         help="Whether they are the least, not a result: no capacity is printed."),
+    _work("all_fixings", "count", fill("Fixings in all"), width=8, help="Of all its pieces."),
+    _force("pull_kn", fill("Pull on one fixing"), fill("Pull each"), is_optional=True,
+        help="The larger of the tensions at 84 % and by the code over the fixings; null where none is counted."),
     _work("weights_assumed", "count", help="Pieces whose weight is an estimate."),
     _work("heights_assumed", "count", help="Pieces whose bracket height is assumed."),
     _work("is_per_metre", "flag", help="Whether forces are those of one metre of a piece, as its width is not known."),
@@ -471,11 +479,14 @@ WORK_FIELDS = (
         help="Of one piece, of the sheet Costs."),
     _work("cost", "number", fill("Cost"), width=10, is_optional=True),
     _work("cost_source", label=fill("Source of the cost"), width=24),
+    _work("hours", "number", fill("Hours"), width=8, help="Of work on all its pieces, of all people: assumed."),
 )  # fmt: skip
 """Alike pieces of one room that are fixed in the same way."""
 
 ENTRY_FIELDS = (
     _work("place", "count", fill("No."), width=5, help="Its place in the order of urgency, from 1."),
+    _work("phase", label=fill("Phase"), width=6, choices=PHASES,
+        help="A: now; B: with the next works; C: not worth it on its own, listed only."),
     _work("floor", help="Of its most urgent piece."),
     _work("room"),
     _work("pieces", "count"),
@@ -483,10 +494,26 @@ ENTRY_FIELDS = (
     _work("falls_avoided", "number", fill("Falls avoided"), format="0.000", help="Expected number, if anchors hold."),
     _work("falls_left", "number", fill("Falls left"), format="0.000",
         help="Expected number once it and those before it are fixed."),
+    _work("falls_at_most", "number", fill("Falls avoided at most"), format="0.000", help="Of pieces that stand apart; "
+        "of anchored ones what their anchors are trusted to avoid; else 0."),
     _work("cost", "number", is_optional=True, help="null where the sheet Costs leaves any part of it open."),
+    _work("hours", "number", fill("Hours"), help="Of work: assumed."),
     _work("works", "records", records=WORK_FIELDS, help="What is to be done."),
 )  # fmt: skip
 """One entry of the schedule."""
+
+PHASE_FIELDS = (
+    _work("phase", label=fill("Phase"), choices=PHASES),
+    _work("entries", "count", fill("Entries")),
+    _work("pieces", "count", fill("Pieces")),
+    _work("places", "count", fill("Places"), help="Rooms in which work is to be done."),
+    _work("falls_avoided", "number", fill("Falls avoided"), format="0.000"),
+    _work("falls_left", "number", fill("Falls left"), format="0.000",
+        help="Expected number once the phase and those before it are done; phase C is never done."),
+    _work("cost", "number", fill("Cost"), is_optional=True, help="Of what is known; null where nothing is."),
+    _work("hours", "number", fill("Hours"), help="Of work: assumed."),
+)  # fmt: skip
+"""One phase of the schedule; what is to be expected after it stands beside."""
 
 STATE_FIELDS = (
     _work("falls", "number", fill("Expected falls"), help="Of free-standing pieces of the run's basis."),
@@ -499,8 +526,8 @@ STATE_FIELDS = (
         )
         for risk in RiskClass
     ),
-    _work("pieces_apart", "count", fill("Unconfirmed, or by formula only"), path=("pieces", "apart"), source="apart",
-        help="Unconfirmed, or by formula only where others were simulated."),
+    _work("pieces_apart", "count", fill("Unconfirmed, by formula only, or rolling"), path=("pieces", "apart"),
+        source="apart", help="Unconfirmed, by formula only where others were simulated, or on castors."),
     _work("pieces_anchored", "count", fill("Anchored"), path=("pieces", "anchored"), source="anchored"),
     _work("routes", "counts", help="How many there are by their state."),
     _work("blocked_routes_expected", "number", fill("Blocked routes, expected"), source="blocked_routes"),
@@ -517,7 +544,8 @@ STATE_FIELDS = (
 
 def schedule_fields(row: type) -> Mapping[str, Field]:
     """Return the fields of one of the rows of `assess.schedule_results` by their keys."""
-    return {one.key: one for one in {WorkRow: WORK_FIELDS, ScheduleRow: ENTRY_FIELDS, State: STATE_FIELDS}[row]}
+    tables = {WorkRow: WORK_FIELDS, ScheduleRow: ENTRY_FIELDS, State: STATE_FIELDS, PhaseRow: PHASE_FIELDS}
+    return {one.key: one for one in tables[row]}
 
 
 # ---------------------------------------------------------------- evacuation routes
@@ -683,7 +711,7 @@ def build_table(results: Results, name: str) -> Table:
 def results_html(results: Results, most: int = 10) -> str:
     """Return a short table: pieces by class, and the first rows."""
     words = [risk.word for risk in reversed(RiskClass)]
-    counts = dict.fromkeys((*words, "unconfirmed", "by formula only"), 0)
+    counts = dict.fromkeys((*words, "unconfirmed", "by formula only", "rolls"), 0)
     for one in results:
         if not one.is_anchored:
             counts[one.apart.replace("formula", "by formula only") or one.adopted.risk.word] += one.item.quantity

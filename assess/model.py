@@ -241,10 +241,12 @@ class Item:
     """One row of furniture. Lengths in m, `weight` in kg, `bracket_capacity` in N; None where blank.
 
     `angle_deg` is anticlockwise from X to Breadth, `bracket_height` above the floor, `centre_of_gravity` its height as
-    a share of the piece's [-]; `against_wall`: whether one of its long sides stands against a wall. `assumed` names the
-    fields that were blank and were filled in: sizes, weight and centre of gravity from the catalogue, the axis from the
-    angle. A blank `friction` is the building's: see `Inventory.complete`. `extra` holds what stood in columns that
-    `assess` does not know; `more` the values of columns of the schema that nothing is computed with.
+    a share of the piece's [-]; `against_wall`: whether one of its long sides stands against a wall; `mobile`: whether
+    it stands on castors, its Type's where its own is blank; `fix_by`: the detail that its Type is fixed by, a key of
+    `assess.details.DETAILS`, "" where that is not known. `assumed` names the fields that were blank and were filled in:
+    sizes, weight and centre of gravity from the catalogue, the axis from the angle. A blank `friction` is the
+    building's: see `Inventory.complete`. `extra` holds what stood in columns that `assess` does not know; `more` the
+    values of columns of the schema that nothing is computed with.
     """
 
     row: int
@@ -272,6 +274,8 @@ class Item:
     edge_distance: float | None = None
     importance: str = ""
     against_wall: bool | None = None
+    mobile: bool | None = None
+    fix_by: str = ""
     sizes_from: str = MEASURED
     notes: str = ""
     assumed: tuple[str, ...] = ()
@@ -321,7 +325,10 @@ class Segment:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CatalogueType:
-    """A type of furniture: sizes [m], weight [kg], height of the centre of gravity as a share of its own [-]."""
+    """A type of furniture: sizes [m], weight [kg], height of the centre of gravity as a share of its own [-].
+
+    `fix_by` is a word of `assess.details.FIX_BY`.
+    """
 
     row: int
     type: str
@@ -330,6 +337,8 @@ class CatalogueType:
     height: float | None = None
     weight: float | None = None
     centre_of_gravity: float | None = None
+    fix_by: str = ""
+    mobile: bool | None = None
     source: str = ""
 
 

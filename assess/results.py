@@ -38,16 +38,17 @@ if TYPE_CHECKING:
 
 Detail = float | str | bool | None
 
-CANNOT_ROCK = "cannot rock"
-BASES = ("formula", "simulated", "unconfirmed", CANNOT_ROCK)
+CANNOT_ROCK, ROLLS = "cannot rock", "rolls"
+BASES = ("formula", "simulated", "unconfirmed", CANNOT_ROCK, ROLLS)
 """What an adopted risk rests on: the formula, where nothing was simulated; the simulation; the formula, where
-simulation gave a lower class that cannot be relied on; or that the piece cannot rock, so that it is low. Lists, counts
-and sums do not mix them, but for the last, which counts with those of the run."""
+simulation gave a lower class that cannot be relied on; that the piece cannot rock, so that it is low; or nothing, as it
+stands on castors and rolls, which no method here covers: its chance is that of a piece without them. Lists, counts and
+sums do not mix them, but for "cannot rock", which counts with those of the run."""
 BRANCHES: tuple[str, ...] = (fill("rest"), fill("slide"), fill("rock"), fill("slide and rock"))
 """How a piece starts to move, in words."""
 PIECE_FLAGS = (
     "does_not_rock", "slides", "shenton_extended", "wall_higher", "fell_in_record", "ideal_higher", "either_axis",
-    "assumed_motion", "unknown_building", "weak_motions", "undecided", "unconfirmed",
+    "assumed_motion", "unknown_building", "weak_motions", "undecided", "unconfirmed", "rolls",
 )  # fmt: skip
 """Flags that belong to a piece rather than to one method, in the order in which they are listed."""
 PIECE_FLAG_TEXTS: Mapping[str, str] = {
@@ -58,6 +59,10 @@ PIECE_FLAG_TEXTS: Mapping[str, str] = {
     "unconfirmed": fill(
         "nothing is known of the building: its class is at least that of the faster third of the draws; or the motions "
         "are weaker than the floor's, and the formula's class stands, as simulation gave a lower one"
+    ),
+    "rolls": fill(
+        "on castors, and so slender that it may overturn at a kerb or with its castors locked: it has a class as if it "
+        "stood without them"
     ),
     "either_axis": fill(
         "nearly square on plan, and its axis is blank: the chance is that of a fall along either axis in one earthquake"
@@ -283,6 +288,8 @@ class ItemRow:
     assumed: tuple[str, ...]
     extra: tuple[str, ...]
     more: Mapping[str, Any]
+    mobile: bool | None
+    fix_by: str
     routes: tuple[str, ...]
     governing: int
     first_case: int
@@ -499,7 +506,7 @@ class ItemResult:
     def apart(self) -> str:
         """Its basis where that is not the one of the run's counts, by which it stands apart in lists and sums: else "".
 
-        One of "unconfirmed" and, in a run that simulated other pieces, "formula".
+        One of "unconfirmed", "rolls" and, in a run that simulated other pieces, "formula".
         """
         return "" if self.adopted.basis in (self.main_basis, CANNOT_ROCK) else self.adopted.basis
 
@@ -650,7 +657,7 @@ class CaseTable:
     * `item`, `motion` (n,): Places in `Results.item_rows` and `Results.motions`.
     * `outcomes`: Every method's values, details and flags, (n,) each, by its key.
     * `adopted` (mapping of str to (n,) array): probability, low, high, rocks_from [-]; risk, upper (classes); basis
-      (place in `BASES`); doubtful, ideal_higher, either_axis (boolean).
+      (place in `BASES`); doubtful, ideal_higher, either_axis, rolls (boolean).
     """
 
     item: NDArray[np.int32]
@@ -806,10 +813,11 @@ class CaseColumns(Columns):
             return [None] * len(self)
         if name == "method":
             is_unknown = self._raise("unknown_building").tolist()
-            bases = zip(self.column("adopted.basis"), is_unknown, strict=True)
+            bases = zip(self.column("adopted.basis"), is_unknown, self.is_simulated.tolist(), strict=True)
             keys = {"formula": run.formula.key, "simulated": run.simulation.key, CANNOT_ROCK: ""}
             doubted = (keys["formula"], keys["simulated"])
-            return [keys[basis] if basis in keys else doubted[unknown] for basis, unknown in bases]
+            return [keys[one] if one in keys else doubted[has_run if one == ROLLS else unknown]
+                    for one, unknown, has_run in bases]  # fmt: skip
         if name == "flags":
             return self._list_flags()
         if name == "probability" and np.isnan(adopted[name]).any():
@@ -819,7 +827,7 @@ class CaseColumns(Columns):
     def _raise(self, flag: str) -> NDArray[np.bool_]:
         table = self._run.cases_table
         raised = [one.flags[flag][self.cut] for one in table.outcomes.values() if flag in one.flags]
-        if flag in ("ideal_higher", "either_axis"):
+        if flag in ("ideal_higher", "either_axis", "rolls"):
             raised.append(table.adopted[flag][self.cut])
         if flag == "unconfirmed":
             raised.append(table.adopted["basis"][self.cut] == BASES.index(flag))
@@ -916,7 +924,8 @@ class ItemColumns(Columns):
             return np.where(can_rock, classify_all(table.outcomes[key].value[cut]), -1).clip(RiskClass.LOW)
 
         risk, formula = adopted("risk"), self._join(np.maximum, by_formula(run.formula.key))
-        is_confirmed = table.adopted["basis"][cut][governing] != BASES.index("unconfirmed")
+        doubted = [BASES.index(one) for one in ("unconfirmed", ROLLS)]
+        is_confirmed = ~np.isin(table.adopted["basis"][cut][governing], doubted)
         is_lowered = is_simulated & (risk < formula) & can_rock[governing] & is_confirmed
         exact = np.where(self.cases.is_simulated, classify_all(self.cases.exact), -1).clip(RiskClass.LOW)
         lists = {

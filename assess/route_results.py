@@ -34,11 +34,16 @@ FLAGS: Mapping[str, str] = {
     "and as fallen",
     "unconfirmed_motions": "its lower simulated class is not confirmed, as the motions are weaker than the floor's: it "
     "counts as standing and as fallen",
+    "rolls": "it stands on castors and may roll into the way: it counts as standing and as in the way",
 }
 """What each flag of a piece beside a segment, or of a segment, means."""
 
-DOUBTS: Mapping[str, str] = {"unknown_building": "unconfirmed_building", "weak_motions": "unconfirmed_motions"}
-"""Flags of unconfirmed pieces, by the flag of the simulation that keeps a lower class from being adopted."""
+ROLLING = "rolls"
+DOUBTS: Mapping[str, str] = {
+    "unknown_building": "unconfirmed_building", "weak_motions": "unconfirmed_motions", ROLLING: ROLLING
+}  # fmt: skip
+"""Flags of unconfirmed pieces, by the flag of the simulation that keeps a lower class from being adopted; of pieces
+that roll their own."""
 
 
 class RouteState(StrEnum):
@@ -84,6 +89,7 @@ MISSING: Mapping[str, str] = {
     "beyond_stairs": "segments from stairs to an exit (Routes)",
     "unconfirmed_building": "Period T1 or Height (Building)",
     "unconfirmed_motions": "motions of your own that reach the PFA and PFV of the floor",
+    "rolls": "a parking place out of the way, with castors that lock and a tether, of pieces that roll",
 }
 """What may be missing, by the keys of `MissingRow.what`, and the sheet to fill it in."""
 

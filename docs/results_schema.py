@@ -20,6 +20,7 @@ from assess.fields import (
     ENTRY_FIELDS,
     GROUND_FIELDS,
     MOTION_FIELDS,
+    PHASE_FIELDS,
     SHAKING_FIELDS,
     SIMULATION_FIELDS,
     STATE_FIELDS,
@@ -160,12 +161,14 @@ def _method() -> Schema:
 
 def _schedule() -> Schema:
     """Return the schema of the schedule."""
-    entry, state = _of_fields(ENTRY_FIELDS), _of_fields(STATE_FIELDS)
+    entry, state, phase = _of_fields(ENTRY_FIELDS), _of_fields(STATE_FIELDS), _of_fields(PHASE_FIELDS)
     state["properties"]["routes"] |= _map(COUNT)
     made = _object({
         "entries": _list(entry) | {"description": "The most urgent first."},
+        "checks": _list(entry) | {"description": "Pieces that are anchored or roll, to check or to park: in no sum."},
+        "phases": _list(_object(phase["properties"] | {"after": state})),
         "before": state,
-        "after": state | {"description": "With every piece of the entries anchored, and its anchors holding."},
+        "after": state | {"description": "With the pieces of phases A and B anchored, and their anchors holding."},
         "cost": _or_null({"type": "number"}) | {"description": "Sum of the costs that are known."},
         "entries_without_cost": COUNT,
     })  # fmt: skip

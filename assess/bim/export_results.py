@@ -171,14 +171,17 @@ def _read_entry(row: Part, known: Mapping[str, int]) -> ScheduleRow:
         has_code = work.values.get("tension_code_kn") is not None
         works.append(
             WorkRow(
-                **_read_plain(WorkRow, work, {"detail", "cost_source"}), items=items,
+                **_read_plain(WorkRow, work, {"detail", "like", "hours", "cost_source"}), items=items,
                 item_indices=tuple(known[one] for one in items), detail=work.choice("detail", tuple(DETAILS)),
+                like=work.choice("like" if "like" in work.values else "detail", tuple(DETAILS)), hours=0.0,
                 tension_code_kn=work.number("tension_code_kn") if has_code else None,
                 is_per_metre=work.values.get("is_per_metre") is True, unit_cost=None, cost=None, cost_source="",
             )
         )  # fmt: skip
     return ScheduleRow(
-        **_read_plain(ScheduleRow, row, set()),
+        **_read_plain(ScheduleRow, row, {"phase", "falls_at_most"}),
+        phase=str(row.values.get("phase", "A")),
+        falls_at_most=0.0,
         item_indices=tuple(at for work in works for at in work.item_indices),
         is_together=row.values.get("only_together") is True,
         works=tuple(works),

@@ -206,6 +206,8 @@ def describe_result(results: "Results") -> Iterator[str]:
         yield line("  unconfirmed", counts.unconfirmed, f", not counted above: {' '.join([UNCONFIRMED, *ways])}")
     if counts.by_formula:
         yield line("  by formula", counts.by_formula, ", not counted above: not simulated")
+    if counts.rolls:
+        yield line("  rolls", counts.rolls, ", not counted above: on castors, which no method covers")
     if counts.anchored:
         depends = "it depends on its anchors" if counts.anchored == 1 else "they depend on their anchors"
         yield line("  anchored", counts.anchored, f", not classified: {depends}")

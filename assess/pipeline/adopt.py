@@ -30,7 +30,7 @@ from assess.results import BASES
 from assess.risk import RiskClass, classify_all, wilson_interval
 from assess.rocking.block import STOCKY
 from assess.rocking.draws import MARGIN, Uncertainty
-from assess.route_results import DOUBTS
+from assess.route_results import DOUBTS, ROLLING
 from assess.routes.chances import Falls
 from assess.settings import Settings
 from assess.units import GRAVITY
@@ -41,7 +41,10 @@ if TYPE_CHECKING:
 
 IntArray = NDArray[np.int64]
 
-FORMULA, SIMULATED, UNCONFIRMED, CANNOT_ROCK = range(len(BASES))
+FORMULA, SIMULATED, UNCONFIRMED, CANNOT_ROCK, ROLLS = range(len(BASES))
+ROLLS_FROM = 0.35
+"""b/z_c [-] from which a piece on castors is taken to roll and not to overturn: one that is more slender may overturn
+where a castor meets a kerb or a threshold, or is locked. Assumed."""
 SQUARE = 1.3
 """Width over breadth [-] below which a piece counts as square on plan."""
 
@@ -57,6 +60,7 @@ class Adoption:
     * `ideal_higher`: where the class of the piece as given, under exactly this motion, is above the adopted one.
     * `either_axis`: where it is the chance of a fall along either axis.
     * `rocks_from`: share of g b/z that PFA has to reach for the piece to rock in any draw [-].
+    * `rolls`: where a piece stands on castors and has a class all the same, as it is slender.
     """
 
     probability: FloatArray
@@ -69,6 +73,7 @@ class Adoption:
     ideal_higher: BoolArray
     either_axis: BoolArray
     rocks_from: FloatArray
+    rolls: BoolArray
 
     @property
     def can_rock(self) -> BoolArray:
@@ -93,8 +98,8 @@ def find_start(cases: Cases, settings: Settings) -> FloatArray:
     return MARGIN / drawn.largest_start(cases.centre, cases.scanned, spread, cases.peak)
 
 
-def adopt(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings) -> Adoption:
-    """Adopt a risk for every case."""
+def adopt(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings, mobile: BoolArray) -> Adoption:
+    """Adopt a risk for every case; `mobile` (n,) marks the pieces on castors."""
     found = outcomes[adopted_formula(settings.class_by).key].value
     # FEMA P-58 is for pieces of uniform weight, and has no value where such a piece is too stocky to rock: a top-heavy
     # one can rock all the same, and its chance is taken to be none
@@ -116,14 +121,20 @@ def adopt(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings) -> 
     risk = np.maximum(classify_all(probability), at_least)
     ideal_higher = has_run & (classify_all(ideal) > risk)
     upper = np.where(has_run & can_rock, np.maximum(risk, classify_all(high)), risk)
-    basis = np.select([~can_rock, unconfirmed, has_run], [CANNOT_ROCK, UNCONFIRMED, SIMULATED], FORMULA)
+    rolls = mobile & (cases.threshold >= ROLLS_FROM)
+    basis = np.select([rolls, ~can_rock, unconfirmed, has_run], [ROLLS, CANNOT_ROCK, UNCONFIRMED, SIMULATED], FORMULA)
     return Adoption(
         probability=probability, low=np.where(basis == SIMULATED, low, np.nan),
         high=np.where(basis == SIMULATED, high, np.nan), risk=risk,
         upper=np.where(ideal_higher, np.maximum(upper, classify_all(ideal)), upper), basis=basis.astype(np.int8),
         doubtful=doubtful, ideal_higher=ideal_higher, either_axis=np.zeros_like(can_rock),
-        rocks_from=find_start(cases, settings),
+        rocks_from=find_start(cases, settings), rolls=mobile & ~rolls,
     )  # fmt: skip
+
+
+def list_mobile(inventory: Inventory) -> BoolArray:
+    """Return which pieces of an inventory (n,) stand on castors."""
+    return np.array([bool(one.mobile) for one in inventory.items], dtype=np.bool_)
 
 
 def _numbers(outcome: Outcome, name: str) -> FloatArray:
@@ -231,7 +242,8 @@ def build_falls(
     which pieces count as anchored.
 
     Draw k is one earthquake for the whole building: all simulated pieces share its scale, and on floors whose motions
-    were generated along one axis its phases. A piece whose simulated class may not be adopted is unconfirmed. With
+    were generated along one axis its phases. A piece whose simulated class may not be adopted is unconfirmed, and so
+    is one that rolls: it may stand in the way. With
     `settings.ideal` the verdicts are those of the pieces as given under the motions as they are.
     """
     found = outcomes[simulation().key]
@@ -240,10 +252,10 @@ def build_falls(
         probability=adoption.probability[governing], high=np.fmax(adoption.probability, adoption.high)[governing],
         fell={at: fell[case] for at, case in enumerate(governing.tolist()) if case in fell} | dict(either_axis),
         unconfirmed={
-            at: tuple(name for flag, name in DOUBTS.items() if found.flags[flag][case])
+            at: tuple(name for flag, name in DOUBTS.items() if flag != ROLLING and found.flags[flag][case])
             for at, case in enumerate(governing.tolist())
             if adoption.basis[case] == UNCONFIRMED
-        },
+        } | dict.fromkeys(np.flatnonzero(adoption.basis[governing] == ROLLS).tolist(), (ROLLING,)),
         in_record=_numbers(found, "record_overturned")[governing], stands=~adoption.can_rock[governing], anchored=held,
         quantity=np.array([item.quantity for item in inventory.items], dtype=np.intp),
     )  # fmt: skip

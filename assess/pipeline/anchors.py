@@ -48,7 +48,7 @@ from assess.rocking.draws import PEAK
 from assess.schedule_results import ScheduleRow
 from assess.settings import Settings
 from assess.units import FORCE, GRAVITY, LENGTH, to_edge
-from assess.workbook.catalogue import find_contents
+from assess.workbook.catalogue import find_built_in
 from assess.workbook.names import key
 
 if TYPE_CHECKING:
@@ -94,12 +94,12 @@ class Weight(NamedTuple):
     is_per_metre: bool = False
 
 
-def find_weight(item: Item, language: str = "en") -> Weight:
-    """Return the weight of a piece with its contents; `language` is that of the workbook, in which it names types."""
+def find_weight(item: Item) -> Weight:
+    """Return the weight of a piece with its contents."""
     if item.weight is not None:
         source, words = ("type", _FROM_TYPE) if "weight" in item.assumed else ("given", _GIVEN)
         return Weight(item.weight * GRAVITY, source, words)
-    contents = find_contents(item.type, language)
+    contents = (find_built_in(item.type) or {}).get("contents", "")
     density, volume = DENSITIES[contents or UNKNOWN].density, item.breadth * (item.width or WIDTH) * item.height
     return Weight(density * volume * GRAVITY, "estimate", _ESTIMATES[contents], is_per_metre=item.width is None)
 
@@ -115,6 +115,8 @@ _ESTIMATES[""] = fill(
     "estimated: {density:g} kg/m³, assumed to be full of {meaning} ({source})", **DENSITIES[UNKNOWN]._asdict()
 )
 
+WHAT_IF = "what_if"
+"""In `Item.more` of a piece that the settings anchor, not the workbook."""
 BRACKET = 0.9
 """Height of a bracket over that of the piece, assumed where none is given [-]."""
 UPWARD = 0.2
@@ -125,7 +127,7 @@ def build_anchors(
     inventory: Inventory, cases: "Cases", governing: NDArray[np.intp], settings: Settings
 ) -> list[AnchorRow]:
     """Return what the brackets of all pieces have to carry under the motion that governs each, and whether they do."""
-    items, weights = inventory.items, [find_weight(one, inventory.language) for one in inventory.items]
+    items, weights = inventory.items, [find_weight(one) for one in inventory.items]
     piece, capacity = _list_pieces(items, weights), _list_numbers([one.bracket_capacity for one in items])
     pfa, spread = cases.pfa[governing], find_spread(cases)[governing]
     low, middle, high = (find_tension(**piece, acceleration=k) for k in _scatter(pfa, spread))
@@ -192,7 +194,7 @@ def find_held(inventory: Inventory, pfa: FloatArray, dispersion: FloatArray) -> 
     ]
     if known:
         own = [items[at] for at in known]
-        weights = [find_weight(one, inventory.language) for one in own]
+        weights = [find_weight(one) for one in own]
         piece, is_per_metre = _list_pieces(own, weights), np.array([one.is_per_metre for one in weights])
         capacity = _list_numbers([one.bracket_capacity for one in own])
         _, middle, high = (find_tension(**piece, acceleration=k) for k in _scatter(pfa[known], dispersion[known]))
@@ -271,7 +273,7 @@ def anchor_first(assessment: Assessment, rows: Sequence[ScheduleRow]) -> Assessm
 
 def _anchor(inventory: Inventory, indices: Collection[int]) -> Inventory:
     items = (
-        replace(one, anchored="yes", bracket_capacity=None) if at in indices else one
+        replace(one, anchored="yes", bracket_capacity=None, more={**one.more, WHAT_IF: True}) if at in indices else one
         for at, one in enumerate(inventory.items)
     )
     return replace(inventory, items=tuple(items))

@@ -25,7 +25,7 @@ from assess.arrays import BoolArray, FloatArray
 from assess.fragility import fit_fragility
 from assess.hazard import HazardCurve
 from assess.i18n import Text, fill, nfill
-from assess.pipeline.adopt import Assessment
+from assess.pipeline.adopt import ROLLS, Assessment
 from assess.pipeline.known_ground import Ground, find_ground
 from assess.pipeline.verify import MOST_PAIRS, RockedLevels, Sweep
 from assess.progress import Progress
@@ -287,7 +287,8 @@ def _sum_up(
     """
     every, held = sweep.assessment.inventory.items, sweep.assessment.held
     quantity = {item: every[item].quantity for item in items if not held[item]}
-    free = np.flatnonzero(~held).tolist()
+    rolls = sweep.assessment.adoption.basis[sweep.assessment.governing] == ROLLS  # not covered
+    free = np.flatnonzero(~held & ~rolls).tolist()
     too_stocky = set(sweep.assessment.case_item[sweep.cases.is_stocky].tolist())
     pieces = sum(quantity.values())
     stocky = sum(every[at].quantity for at in too_stocky.intersection(free))

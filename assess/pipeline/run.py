@@ -25,6 +25,7 @@ from assess.pipeline.adopt import (
     choose_items,
     find_governing,
     find_ruling,
+    list_mobile,
     unite_axes,
 )
 from assess.pipeline.anchors import anchor_first, anchor_named, find_held, find_spread, spell_names
@@ -168,7 +169,7 @@ def _compute(
         cases = replace(cases, ensemble=np.where(waits[case_item], -1, cases.ensemble))
     simulated = verify(cases, case_item, case_demand, settings, jobs=jobs, progress=progress, verdicts=verdicts)
     outcomes[simulation().key] = simulated
-    adoption = adopt(outcomes, cases, settings)
+    adoption = adopt(outcomes, cases, settings, list_mobile(inventory)[case_item])
     adoption, both = unite_axes(adoption, outcomes, cases, inventory, case_item, case_demand, settings)
     governing = find_governing(adoption, case_item, find_ruling(cases, settings))
     is_unconfirmed = (adoption.basis == UNCONFIRMED) & simulated.flags["unknown_building"]

@@ -1,73 +1,192 @@
-"""What to fix, in which order and with what; and what is to be expected before and after.
+"""What to fix, in which phase and order and with what; and what is to be expected before and after.
 
 Its entries are pieces, alike pieces of one room, and pieces that only help a route together. What comes after is not
 simulated again: the draws of the run are evaluated with the pieces of the schedule held, as a run with these pieces
 anchored would.
+
+The phases are by rule (`PHASE_RULE`). Anchored pieces whose anchor is not known to hold are listed to be checked, and
+pieces that roll to be parked; what that avoids is in no sum.
 """
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from itertools import accumulate
+from typing import NamedTuple
 
-from assess.details import AT_BASE, AT_WALL, DETAILS, count_fixings, find_detail
+from assess.details import (
+    AT_BASE,
+    AT_WALL,
+    CASTORS,
+    CHECK,
+    COMPLETE,
+    DETAILS,
+    count_fixings,
+    find_detail,
+    says_castors,
+)
+from assess.i18n import fill
 from assess.model import Cost, Inventory
-from assess.results import ItemResult, ItemRow, Results, count_pieces, sum_falls
+from assess.pipeline.anchors import WHAT_IF
+from assess.results import ROLLS, ItemResult, ItemRow, Results, count_pieces, sum_falls
 from assess.risk import RiskClass, find_ends
 from assess.route_results import RouteRow, RouteState, RouteTables
-from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
+from assess.schedule_results import PHASES, PhaseRow, Schedule, ScheduleRow, State, WorkRow
 from assess.text import natural_key
 
-APART = ("", "unconfirmed", "formula")
+APART = ("", "unconfirmed", "formula", ROLLS)
 """The bases in the order of lists: that of the run, and what stands apart."""
 NO_FALLS = 1e-12
 """Expected number of falls below which what is left is that of rounding, and 0."""
 FILES = ("vertical file", "lateral file", "file cabinet", "filing cabinet", "schedario", "classificatore")
 """Words of a description or type, in every language of the workbook, by which a piece is fixed at its base."""
+ENOUGH, LITTLE = 0.8, 0.01
+"""Shares of the falls that all entries avoid: what phase A reaches, and below what one is not worth it. Assumed."""
+PHASE_RULE = fill(
+    "A: the entries of highest class, until they avoid {enough:.0%} of the falls that all entries avoid, and all that "
+    "open a way out that is blocked or fix a life-safety piece whose upper class is high or above. C: entries of low "
+    "class, or that avoid less than {little:.0%}, that open no way out and are not life safety. B: the rest.",
+    enough=ENOUGH, little=LITTLE,
+)  # fmt: skip
+"""How entries are put into phases, for reports."""
+_A, _B, _C = PHASES
+
+
+class Planned(NamedTuple):
+    """The pieces of an entry, the most urgent first, with its phase and what it avoids; at most, of what is apart."""
+
+    phase: str
+    pieces: list[ItemResult]
+    avoided: float
+    at_most: float
 
 
 def build_schedule(
     results: Results, inventory: Inventory, evaluate: Callable[[Collection[int]], RouteTables]
 ) -> Schedule:
     """Return the schedule of a run; `evaluate` returns its routes with further pieces (indices) held."""
-    rows = tuple(results)
-    entries = list_entries(rows, results.route_tables.routes)
-    avoided = [sum(map(count_falls, one)) for one in entries]
-    total = sum(count_falls(one) for one in rows if not one.is_anchored)
-    left = list(accumulate(avoided, lambda falls, one: falls - one if falls - one >= NO_FALLS else 0.0, initial=total))
+    rows, tables = tuple(results), results.route_tables
+    planned, checked = plan(rows, tables.routes), plan_checks(rows, tables.routes)
     found = ((find_detail(one.detail), one) for one in inventory.costs)
     costs = {detail.key: one for detail, one in found if detail}
-    together = _list_together(results.route_tables.routes)
-    held = {one.item.index for entry in entries for one in entry}
+    together = _list_together(tables.routes)
+    left = sum(count_falls(one) for one in rows if not one.is_anchored)
     described = []
-    for place, entry in enumerate(entries, 1):
-        indices, alike = tuple(one.item.index for one in entry), dict[object, list[ItemResult]]()
-        for one in entry:
+    for place, entry in enumerate((*planned, *checked), 1):
+        left = left - entry.avoided if left - entry.avoided >= NO_FALLS else 0.0
+        indices, alike = tuple(one.item.index for one in entry.pieces), dict[object, list[ItemResult]]()
+        for one in entry.pieces:
             alike.setdefault(_kind(one), []).append(one)
+        first = entry.pieces[0].item
         row = ScheduleRow(
-            place=place, floor=entry[0].item.floor, room=entry[0].item.room, item_indices=indices,
-            pieces=count_pieces(entry), is_together=any(len(one & set(indices)) > 1 for one in together),
-            works=tuple(_describe_work(own, costs) for own in alike.values()),
-            falls_avoided=avoided[place - 1], falls_left=left[place],
+            place=place, phase=entry.phase, floor=first.floor, room=first.room, item_indices=indices,
+            pieces=count_pieces(entry.pieces), is_together=any(len(one & set(indices)) > 1 for one in together),
+            works=tuple(_describe_work(own, costs) for own in alike.values()), falls_avoided=entry.avoided,
+            falls_left=left, falls_at_most=entry.at_most,
         )  # fmt: skip
         described.append(row)
-    return Schedule(
-        rows=tuple(described),
-        before=_sum_up(rows, results.route_tables, ()),
-        after=_sum_up(rows, evaluate(held) if held else results.route_tables, held),
-    )
+    fixes, checks = tuple(described[: len(planned)]), tuple(described[len(planned) :])
+    before = after = _sum_up(rows, tables, ())
+    phases, held, last = [], set[int](), sum(count_falls(one) for one in rows if not one.is_anchored)
+    for phase in PHASES:
+        own = [one for one in fixes if one.phase == phase]
+        if not own:
+            continue
+        if phase != _C:
+            held.update(index for one in own for index in one.item_indices)
+            after, last = _sum_up(rows, evaluate(frozenset(held)), held), own[-1].falls_left
+        priced = [work.cost for one in own for work in one.works if work.cost is not None]
+        places = {(work.floor, work.room or work.items) for one in own for work in one.works}
+        row_of_phase = PhaseRow(
+            phase=phase, entries=len(own), pieces=sum(one.pieces for one in own), places=len(places),
+            falls_avoided=sum(one.falls_avoided for one in own), falls_left=last,
+            cost=sum(priced) if priced else None, hours=sum(one.hours for one in own), after=after,
+        )  # fmt: skip
+        phases.append(row_of_phase)
+    return Schedule(rows=fixes, before=before, after=after, checks=checks, phases=tuple(phases))
+
+
+def plan(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[Planned]:
+    """Return the entries of the schedule by `PHASE_RULE`: by phase, upper class, and what each avoids."""
+    entries = [
+        Planned(_B, one, sum(map(count_falls, one)), sum(map(_count_at_most, one) if one[0].apart else ()))
+        for one in _group_entries(rows, routes)
+    ]
+    entries.sort(
+        key=lambda one: (
+            APART.index(one.pieces[0].apart), -max(piece.adopted.upper for piece in one.pieces),
+            -one.avoided - one.at_most,
+        )
+    )  # fmt: skip
+    opening = {fix.item_index for one in routes for fix in one.fixes}
+    blocked = [one for one in routes if one.state == RouteState.BLOCKED and one.is_fixed]
+    urgent = {fix.item_index for one in blocked for fix in one.fixes}
+    total = sum(one.avoided for one in entries)
+
+    def is_needed(one: Planned) -> bool:
+        return any(piece.item.index in urgent or _is_dangerous(piece) for piece in one.pieces)
+
+    def is_poor(one: Planned) -> bool:
+        has_few = one.avoided < LITTLE * total or all(piece.adopted.risk == RiskClass.LOW for piece in one.pieces)
+        is_open = any(piece.item.index in opening or _is_safety(piece) for piece in one.pieces)
+        return has_few and not (is_open or one.pieces[0].apart)
+
+    reached, phased = sum(one.avoided for one in entries if is_needed(one)), []
+    for one in entries:
+        phase = _A if is_needed(one) else _C if is_poor(one) else _B
+        if phase == _B and not one.pieces[0].apart and reached < ENOUGH * total:
+            phase, reached = _A, reached + one.avoided
+        phased.append(one._replace(phase=phase))
+    return sorted(phased, key=lambda one: one.phase)
+
+
+def plan_checks(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[Planned]:
+    """Return entries of pieces to check: anchored ones whose anchor is not known to hold, and those that roll.
+
+    Of anchored ones those of at least medium class if they stood free. Phase A: those of high class then, of life
+    safety, or on a route; of pieces that roll the last two.
+    """
+    opening = {fix.item_index for one in routes for fix in one.fixes}
+    groups: dict[object, list[ItemResult]] = {}
+    for one in rows:
+        anchor, is_anchored = one.item.anchor, one.is_anchored and not one.item.more.get(WHAT_IF)
+        is_open = anchor.holds is not True or False in (anchor.holds_high, anchor.holds_code)
+        if (is_anchored and is_open and one.adopted.upper >= RiskClass.MEDIUM) or _rolls(one):
+            groups.setdefault(_kind(one), []).append(one)
+    found = []
+    for own in groups.values():
+        is_high = not _rolls(own[0]) and any(one.adopted.upper >= RiskClass.HIGH for one in own)
+        is_near = any(_is_safety(one) or one.routes or one.item.index in opening for one in own)
+        found.append(Planned(_A if is_high or is_near else _B, own, 0.0, sum(map(_count_at_most, own))))
+    return sorted(found, key=lambda one: (one.phase, _rolls(one.pieces[0]), -one.at_most))
+
+
+def _rolls(one: ItemResult) -> bool:
+    return one.apart == ROLLS and not one.is_anchored
+
+
+def _is_safety(one: ItemResult) -> bool:
+    return one.item.importance == "life safety"
+
+
+def _is_dangerous(one: ItemResult) -> bool:
+    return _is_safety(one) and one.adopted.upper >= RiskClass.HIGH
+
+
+def _count_at_most(one: ItemResult) -> float:
+    return one.adopted.probability * one.item.quantity
 
 
 def count_falls(one: ItemResult) -> float:
     """Return the expected number of falls of a row, 0 where it stands apart from the run's basis."""
-    return 0.0 if one.apart else one.adopted.probability * one.item.quantity
+    return 0.0 if one.apart else _count_at_most(one)
 
 
 def list_entries(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[list[ItemResult]]:
-    """Return the pieces of each entry of the schedule, in its order.
+    """Return the pieces of each entry of the schedule, in its order."""
+    return [one.pieces for one in plan(rows, routes)]
 
-    Those that only help together, and alike ones of one room, stand in one. It stands where the first of its pieces
-    does.
-    """
+
+def _group_entries(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[list[ItemResult]]:
+    """Return the pieces of each entry: those that only help together, and alike ones of one room, stand in one."""
     chosen = fix_first(rows, {fix.item_index for route in routes for fix in route.fixes})
     leader = {one.item.index: one.item.index for one in chosen}
 
@@ -101,7 +220,8 @@ def fix_first(results: Iterable[ItemResult], needed: Collection[int] = ()) -> li
     chosen = [
         one
         for one in results
-        if not one.is_anchored and (one.adopted.upper >= RiskClass.MEDIUM or one.item.index in needed)
+        if not (one.is_anchored or one.apart == ROLLS)
+        and (one.adopted.upper >= RiskClass.MEDIUM or one.item.index in needed)
     ]
     return sorted(
         chosen,
@@ -123,7 +243,7 @@ def _kind(one: ItemResult) -> tuple[object, ...]:
     sizes = (item.breadth_cm, item.width_cm, item.height_cm, item.anchor.tension_high_kn)
     bracket = (item.anchored, item.anchor.holds, item.anchor.holds_high) if item.anchor.holds is not None else ()
     described = item.floor, room, item.type, item.description, choose_detail(item), sizes, bracket
-    return *described, item.importance, one.apart, adopted.upper, one.routes
+    return *described, item.importance, one.is_anchored, one.apart, adopted.upper, one.routes
 
 
 def _list_together(routes: Sequence[RouteRow]) -> list[frozenset[int]]:
@@ -143,11 +263,13 @@ def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> Wo
     """Return the work on alike pieces: the largest forces that their fixings have to carry.
 
     Moments about the toe give the tension at the bracket; at the base the same moment acts on the breadth, and the base
-    carries the whole horizontal force, k W: that of the tension without the help of the weight, k W z/h.
+    carries the whole horizontal force, k W: that of the tension without the help of the weight, k W z/h. An anchor that
+    is to be checked or completed has the forces and fixings of the detail that its type would have.
     """
     first, rows = alike[0].item, [one.item for one in alike]
     detail = DETAILS[choose_detail(first)]
-    pieces, cost = sum(one.quantity for one in rows), costs.get(detail.key)
+    done = CHECK if first.is_held else COMPLETE if first.anchored in ("yes", "partly") else detail.key
+    pieces, cost = sum(one.quantity for one in rows), costs.get(done)
     tension, high, codes, shear = [], [], [], []
     for one in rows:
         anchor = one.anchor
@@ -162,23 +284,30 @@ def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> Wo
         floor=first.floor, room=first.room,
         items=tuple(one.item for one in rows),
         item_indices=tuple(one.index for one in rows),
-        pieces=pieces, detail=detail.key, tension_kn=max(tension), tension_high_kn=max(high), tension_code_kn=code,
+        pieces=pieces, detail=done, like=detail.key, tension_kn=max(tension),
+        tension_high_kn=max(high), tension_code_kn=code,
         shear_kn=max(shear), fixings=count_fixings(detail, 1000 * max(*high, code or 0.0)),
         weights_assumed=sum(one.quantity for one in rows if one.anchor.weight_source == "estimate"),
         heights_assumed=0 if detail.is_at_base else sum(one.quantity for one in rows if one.anchor.is_height_assumed),
         is_per_metre=any(one.anchor.is_per_metre for one in rows),
         unit_cost=None if cost is None else cost.unit_cost,
         cost=None if cost is None else pieces * cost.unit_cost,
-        cost_source="" if cost is None else cost.source,
+        cost_source="" if cost is None else cost.source, hours=pieces * DETAILS[done].hours,
     )  # fmt: skip
 
 
 def choose_detail(item: ItemRow) -> str:
-    """Return the generic detail for a piece: at the base where it stands free of walls or is a filing cabinet."""
+    """Return the generic detail for a piece: that of its type, else a bracket, or at the base of a filing cabinet.
+
+    What stands free of walls is held at its base instead of at a wall; what stands on castors, or says so while its
+    Mobile is not known, is held neither at a wall nor at its base.
+    """
     named = f"{item.type} {item.description}".casefold()
-    if item.against_wall is False or any(word in named for word in FILES):
-        return AT_BASE
-    return AT_WALL
+    detail = item.fix_by or (AT_BASE if any(word in named for word in FILES) else AT_WALL)
+    is_mobile = item.mobile if item.mobile is not None else says_castors(named, item.notes)
+    if detail in (AT_WALL, AT_BASE, "strap") and is_mobile:
+        return CASTORS
+    return AT_BASE if detail in (AT_WALL, "strap") and item.against_wall is False else detail
 
 
 def _sum_up(rows: Sequence[ItemResult], routes: RouteTables, held: Collection[int]) -> State:

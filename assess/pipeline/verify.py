@@ -22,7 +22,7 @@ from assess.model import Inventory
 from assess.motion.assumed import RATIO_SCATTER
 from assess.motion.floor_medians import SCATTER
 from assess.motion.target_fit import measure_peaks
-from assess.pipeline.adopt import Assessment, adopt, build_falls, find_governing, find_ruling, unite_axes
+from assess.pipeline.adopt import Assessment, adopt, build_falls, find_governing, find_ruling, list_mobile, unite_axes
 from assess.pipeline.anchors import find_held
 from assess.pipeline.city_draws import number_building
 from assess.pipeline.demand import Demand, Demands
@@ -271,10 +271,10 @@ class Sweep:
             formula.key: formula.evaluate(scaled, settings),
             simulation().key: Outcome(value, detail, flags, tuple(joints)),  # without the recorded motion
         }
+        adoption = adopt(outcomes, scaled, settings, list_mobile(inventory)[case_item])
         adoption, united = unite_axes(
-            adopt(outcomes, scaled, settings), outcomes, cases, inventory, case_item, self.assessment.case_demand,
-            settings,
-        )  # fmt: skip
+            adoption, outcomes, cases, inventory, case_item, self.assessment.case_demand, settings
+        )
         governing = find_governing(adoption, case_item, find_ruling(scaled, settings))
         held = find_held(inventory, pfa[governing], cases.dispersion[governing])
         falls = build_falls(inventory, adoption, outcomes, governing, settings, united, held)

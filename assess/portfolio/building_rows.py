@@ -129,7 +129,7 @@ def _describe_building(
     source: Source, origin: Origin, inventory: Inventory, results: Results, sums: DrawSums
 ) -> Record:
     site, rows, routes = inventory.building, tuple(results), results.route_tables
-    counts, works = count("", rows), [work for entry in results.schedule.rows for work in entry.works]
+    counts, works = count("", rows), [work for entry in results.schedule.planned for work in entry.works]
     is_any_known = any(one.state is not RouteState.NOT_KNOWN and one.blocked is not None for one in routes.routes)
     people = [one for one in (count_people(routes, route) for route in routes.routes) if one is not None]
     low, high = (None, None) if sums.falls is None else find_ends(sums.falls)
@@ -165,7 +165,7 @@ def _describe_building(
         "falls_low_inventory": expect(origin.low), "falls_high_inventory": expect(origin.high),
         "draws": 0 if sums.falls is None else len(sums.falls),
         "falls_p05": low, "falls_p95": high,
-        "falls_avoided": math.fsum(entry.falls_avoided for entry in results.schedule.rows),
+        "falls_avoided": math.fsum(entry.falls_avoided for entry in results.schedule.planned),
         "works": sum(one.pieces for one in works),
         "works_without_cost": sum(one.pieces for one in works if one.cost is None),
         "routes": len(routes.routes),

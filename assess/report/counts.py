@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from assess.i18n import gettext as _, ngettext, number
 from assess.report import words
-from assess.results import ItemResult, count_pieces, sum_falls
+from assess.results import ROLLS, ItemResult, count_pieces, sum_falls
 from assess.risk import RiskClass, find_ends
 
 Span = tuple[int, int]
@@ -17,7 +17,8 @@ class Counts:
     """Pieces (not rows) of a room, a floor, or of the building, by class; anchored ones stand outside the classes.
 
     Classes never mix bases: `by_class` are the simulated pieces, or those by formula in a run that simulated nothing.
-    `unconfirmed` and `by_formula` (not simulated in a run that simulated others) are counted apart. Of those with a
+    `unconfirmed`, `by_formula` (not simulated in a run that simulated others) and `rolls` (on castors, not covered) are
+    counted apart. Of those with a
     class, `may_be` could be of a higher one. `spans` are, by class, how many belong to it over their whole sampling
     intervals, and how many could, `risky_span` of high and very high together. `expected` is the expected number of
     them that fall, `falls_low` and `falls_high` what 5 and 95 % of the draws do not exceed, None without draws.
@@ -28,6 +29,7 @@ class Counts:
     anchored: int
     unconfirmed: int = 0
     by_formula: int = 0
+    rolls: int = 0
     lowered: int = 0
     may_be: int = 0
     cannot_rock: int = 0
@@ -45,7 +47,7 @@ class Counts:
     @property
     def total(self) -> int:
         """All pieces."""
-        return self.free + self.unconfirmed + self.by_formula + self.anchored
+        return self.free + self.unconfirmed + self.by_formula + self.rolls + self.anchored
 
     @property
     def risky(self) -> int:
@@ -54,8 +56,8 @@ class Counts:
 
     @property
     def has_apart(self) -> bool:
-        """Whether pieces are counted apart, as they are unconfirmed or not simulated."""
-        return bool(self.unconfirmed or self.by_formula)
+        """Whether pieces are counted apart, as they are unconfirmed, not simulated, or roll."""
+        return bool(self.unconfirmed or self.by_formula or self.rolls)
 
     def say_cannot_rock(self) -> list[str]:
         """Return how many are low as they cannot rock, in one sentence; nothing where none is."""
@@ -88,7 +90,7 @@ class Counts:
 
 def count(label: str, results: Iterable[ItemResult]) -> Counts:
     """Count pieces, not rows, by class, those that stand apart, and those whose class could be another."""
-    groups: dict[str, list[ItemResult]] = {basis: [] for basis in ("", "anchored", "unconfirmed", "formula")}
+    groups: dict[str, list[ItemResult]] = {basis: [] for basis in ("", "anchored", "unconfirmed", "formula", ROLLS)}
     for one in results:
         groups["anchored" if one.is_anchored else one.apart].append(one)
     main = groups[""]
@@ -96,7 +98,7 @@ def count(label: str, results: Iterable[ItemResult]) -> Counts:
     return Counts(
         label, {risk: count_pieces(one for one in main if one.adopted.risk == risk) for risk in RiskClass},
         anchored=count_pieces(groups["anchored"]), unconfirmed=count_pieces(groups["unconfirmed"]),
-        by_formula=count_pieces(groups["formula"]),
+        by_formula=count_pieces(groups["formula"]), rolls=count_pieces(groups[ROLLS]),
         lowered=count_pieces(one for one in main if one.adopted.lowered_from is not None),
         may_be=count_pieces(one for one in main if words.find_highest(one) != one.adopted.risk),
         cannot_rock=count_pieces(one for one in main if not one.adopted.can_rock),

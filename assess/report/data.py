@@ -15,7 +15,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from assess.fields import GROUND_FIELDS, MOTION_FIELDS, SHAKING_FIELDS, STATE_FIELDS
+from assess.fields import ENTRY_FIELDS, GROUND_FIELDS, MOTION_FIELDS, PHASE_FIELDS, SHAKING_FIELDS, STATE_FIELDS
 from assess.progress import SILENT, Progress
 from assess.results import Results
 from assess.table import Kind, Table
@@ -24,7 +24,7 @@ from assess.workbook.schema import BUILDING, Column
 
 # ---------------------------------------------------------------- results.json
 
-VERSION = "5.3"
+VERSION = "5.4"
 SCHEMA = Path(__file__).with_name("results.schema.json")
 """JSON Schema of results.json, which docs/results_schema.py makes from the fields."""
 _dump = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(", ", ": ")).encode
@@ -35,8 +35,9 @@ def write_json(
 ) -> None:
     """Write results.json in the shape of `SCHEMA`; `files` are the others of the run, with their SHA-256 if known."""
     routes, schedule = results.route_tables.to_record(), results.schedule
-    state = Table.of(STATE_FIELDS, (schedule.before, schedule.after))
-    before, after = (text for part in state.json_parts() for text in part)
+    states = (schedule.before, schedule.after, *(one.after for one in schedule.phases))
+    before, after, *later = (text for part in Table.of(STATE_FIELDS, states).json_parts() for text in part)
+    phases = (text for part in Table.of(PHASE_FIELDS, schedule.phases).json_parts() for text in part)
     with path.open("w", encoding="utf-8", newline="\n") as file:
         file.write("{\n")
         for name, value in describe_run(results, files).items():
@@ -51,6 +52,11 @@ def write_json(
                 file.write(f"  {json.dumps(name)}: {_dump(value)}")
         file.write('\n },\n "schedule": {\n')
         _write_list(file, "entries", results.table("schedule").json_parts(), " ")
+        file.write(",\n")
+        _write_list(file, "checks", Table.of(ENTRY_FIELDS, schedule.checks).json_parts(), " ")
+        file.write(",\n")
+        pairs = zip(phases, later, strict=True)
+        _write_list(file, "phases", [(f'{one.removesuffix("}")}, "after": {state}}}' for one, state in pairs)], " ")
         file.write(f',\n  "before": {before},\n  "after": {after},\n  "cost": {_dump(schedule.cost)}')
         file.write(f',\n  "entries_without_cost": {schedule.uncosted}\n }}')
         file.write(f',\n "annual": {_dump(results.annual and asdict(results.annual))},\n')

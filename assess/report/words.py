@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from assess.i18n import Text, fill, gettext as _, ngettext, number
 from assess.model import SCANNED
-from assess.results import CANNOT_ROCK, ItemResult
+from assess.results import CANNOT_ROCK, ROLLS, ItemResult
 from assess.risk import LIMITS, RiskClass, classify
 from assess.workbook.draft_names import is_draft
 
@@ -24,6 +24,7 @@ BASES: Mapping[str, Text] = {
     "formula": fill("formula"),
     "unconfirmed": fill("unconfirmed"),
     CANNOT_ROCK: fill("cannot rock"),
+    ROLLS: fill("rolls: not covered"),
 }
 """What a chance rests on, by `assess.results.BASES`."""
 NO_BREAK = "\N{NO-BREAK SPACE}"
@@ -344,6 +345,8 @@ def say_apart(risk: RiskClass, apart: str, *, has_simulated: bool) -> str:
     if apart == "unconfirmed":
         word = risk_word(risk)
         return _("unconfirmed ({risk})", risk=word) if has_simulated else _("unconfirmed (formula: {risk})", risk=word)
+    if apart == ROLLS:
+        return _("rolls: not covered (free-standing: {risk})", risk=risk_word(risk))
     return _("{risk} by formula only", risk=risk_word(risk)) if apart else ""
 
 
@@ -352,6 +355,8 @@ def apart_note(one: ItemResult) -> str:
     if one.apart == "unconfirmed":
         risk = risk_word(one.adopted.risk)
         return risk if one.adopted.has_simulated else _("formula: {risk}", risk=risk)
+    if one.apart == ROLLS:
+        return _("free-standing: {risk}", risk=risk_word(one.adopted.risk))
     return _("by formula only")
 
 
@@ -383,7 +388,7 @@ def was_lowered(risk: str) -> str:
 
 COULD_BE, LOWERED = "?", "↓"
 """Marks next to the symbol of a class where there is no room for words."""
-UNCONFIRMED, BY_FORMULA, ANCHORED = "◌", "ƒ", "⚓"
+UNCONFIRMED, BY_FORMULA, ANCHORED, ROLLING = "◌", "ƒ", "⚓", "◎"
 """Signs in place of the symbol of a class, of what stands outside the classes."""
 APART_FILL, ANCHORED_FILL, INK = "#ffffff", "#e3e3e3", "#1c1c1c"
 """Their colours in bars and on plans."""
@@ -402,23 +407,24 @@ def class_marks(one: ItemResult) -> str:
 
 def class_label(one: ItemResult) -> str:
     """Return the class as symbol and words, ``■ very high``; of what stands apart ``◌ unconfirmed``, ``ƒ high``."""
-    if one.apart == "unconfirmed":
-        return apart_label("unconfirmed")
+    if one.apart in ("unconfirmed", ROLLS):
+        return apart_label(one.apart)
     return f"{BY_FORMULA} {risk_word(one.adopted.risk)}" if one.apart else risk_label(one.adopted.risk)
 
 
 def apart_label(name: str) -> str:
-    """Return sign and words of what stands outside the classes: "unconfirmed", "formula" or "anchored"."""
+    """Return sign and words of what stands outside the classes: "unconfirmed", "formula", "rolls" or "anchored"."""
     return {
         "unconfirmed": f"{UNCONFIRMED} " + _("unconfirmed"),
         "formula": f"{BY_FORMULA} " + _("by formula only"),
+        ROLLS: f"{ROLLING} " + _("rolls"),
         "anchored": f"{ANCHORED} " + _("anchored"),
     }[name]
 
 
 def class_symbol(one: ItemResult) -> str:
     """Return the sign of a piece: that of its class, or of why it stands outside the classes."""
-    signs = {"unconfirmed": UNCONFIRMED, "formula": BY_FORMULA}
+    signs = {"unconfirmed": UNCONFIRMED, "formula": BY_FORMULA, ROLLS: ROLLING}
     return ANCHORED if one.is_anchored else signs.get(one.apart, one.adopted.risk.symbol)
 
 

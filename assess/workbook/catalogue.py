@@ -2,7 +2,8 @@
 
 Sizes, weights (with what the piece holds) and centres of gravity are in cm, kg and percent of the height; what a
 source does not print is blank or marked *assumed* in the column ``source``. ``uses`` names the uses of
-`assess.workbook.schema.USES` that a type belongs to, ``contents`` one of `CONTENTS`: what it is mostly full of.
+`assess.workbook.schema.USES` that a type belongs to, ``contents`` one of `CONTENTS`: what it is mostly full of;
+``fix_by`` and ``mobile`` how an installer fixes it, and whether it stands on castors: assumed, from its name.
 """
 
 from csv import DictReader
@@ -58,20 +59,22 @@ def read_catalogue(units: "Units" = "si", use: str = "") -> list[dict[str, Any]]
                 factors = QUANTITIES[column.quantity]
                 factor = 1.0 if units == "si" else factors[column.unit] / factors[column.imperial]
                 row[name] = round(float(line[header]) * factor, _DECIMALS)
+        row["fix_by"] = gettext(line["fix_by"])
+        row |= {"mobile": gettext(line["mobile"])} if line["mobile"] else {}
         rows.append({**row, "source": gettext(source) if source.startswith(ASSUMED) else source})
     return sorted(rows, key=lambda row: natural_key(row["type"]))
 
 
-def find_contents(name: str, language: str = "en") -> str:
-    """Return which of `CONTENTS` a built-in type has, by its name in a language or in English; "" where it is none."""
+def find_built_in(name: str) -> dict[str, str] | None:
+    """Return the row of a built-in type by its name in any language, English first; None where it is none."""
     own = key(name)
-    return _contents("en").get(own) or _contents(language).get(own, "")
+    return next((row for code in LANGUAGES if own and (row := _by_name(code).get(own))), None)
 
 
 @cache
-def _contents(language: str) -> dict[str, str]:
+def _by_name(language: str) -> dict[str, dict[str, str]]:
     find = load_catalogue(language).find
-    return {key(find(line["type"])): line["contents"] for line in catalogue_rows()}
+    return {key(find(line["type"])): line for line in catalogue_rows()}
 
 
 def catalogue_texts() -> list[str]:

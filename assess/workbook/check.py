@@ -6,7 +6,7 @@ and notes the cells of errors, so that what has been reported once is not report
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
-from assess.details import AT_BASE, AT_WALL, DETAILS, find_detail
+from assess.details import ALTERNATIVES, DETAILS, find_detail
 from assess.errors import Gap, Problem
 from assess.i18n import Text, fill, join, nfill
 from assess.model import AXES, MEASURED, CatalogueType
@@ -143,11 +143,11 @@ def check_costs(tables: Tables) -> Iterator[Problem]:
             cell = table.cell("detail", before.number)
             message = fill("Detail {name} is the same as that in {cell}.", name=row.quote("detail"), cell=cell)
             yield table.problem("detail", row, message, fill("Give each detail one cost."))
-        elif detail.key not in (AT_WALL, AT_BASE) and row.get("unit_cost") is not None:
+        elif detail.key in ALTERNATIVES and row.get("unit_cost") is not None:
             message = fill("Detail {name} is an alternative, which the schedule does not price: its cost is left out.",
                            name=row.quote("detail"))  # fmt: skip
-            priced = {"wall": DETAILS[AT_WALL].title, "base": DETAILS[AT_BASE].title}
-            fix = fill("The schedule prices these: {wall}, {base}.", **priced)
+            priced = join(", ", [one.title for one in DETAILS.values() if one.key not in ALTERNATIVES])
+            fix = fill("The schedule prices these: {priced}.", priced=priced)
             yield table.problem("detail", row, message, fix, "warning")
 
 

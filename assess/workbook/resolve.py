@@ -10,9 +10,11 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from assess import model
+from assess.details import FIX_BY
 from assess.errors import Correction, Problem
 from assess.i18n import fill, nfill
 from assess.model import AXES, Axis, CatalogueType, FloorPlan, FloorRecord, Item, axis_of
+from assess.workbook.catalogue import find_built_in
 from assess.workbook.habits import note, shorten
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table, Tables, row_numbers
@@ -135,7 +137,7 @@ def build_items(table: Table, types: Mapping[str, CatalogueType]) -> tuple[Item,
             items.append(before[2])
             continue
         typed = _find_in_type(table, row, types, FROM_TYPE)
-        values, assumed = {**row.values, **typed}, [*typed]
+        values, assumed = {**row.values, **typed, **_find_fixing(table, row, kind)}, [*typed]
         if "axis" not in values and (axis := turned_axis(row)):
             values["axis"] = axis
             assumed.append("axis")
@@ -147,6 +149,19 @@ def build_items(table: Table, types: Mapping[str, CatalogueType]) -> tuple[Item,
             if row.number not in faulty:
                 kept[row.number] = row, kind, item
     return tuple(items)
+
+
+def _find_fixing(table: Table, row: Row, kind: CatalogueType | None) -> dict[str, Any]:
+    """Return how a piece is fixed, and whether it stands on castors where its row leaves that blank.
+
+    As its type of the Catalogue says, and where that leaves it blank as the built-in type of its name.
+    """
+    built_in = find_built_in(row.get("type") or "") or {"fix_by": "", "mobile": ""}
+    found: dict[str, Any] = {"fix_by": FIX_BY.get((kind and kind.fix_by) or built_in["fix_by"], "")}
+    if row.values.get("mobile") is None and not table.spoilt("mobile", row):
+        is_listed = kind is not None and kind.mobile is not None
+        found["mobile"] = kind.mobile if kind and is_listed else bool(built_in["mobile"]) or None
+    return found
 
 
 def filled_sizes(table: Table, row: Row, types: Mapping[str, CatalogueType]) -> dict[str, float]:

@@ -8,7 +8,7 @@ A header is the label with its unit in brackets, ``Height [cm]``; the bracket is
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from assess.details import DETAILS
+from assess.details import DETAILS, FIX_BY
 from assess.intensity import SHAKINGS
 from assess.model import ANCHORED, AXES, IMPORTANCE, SIZES_FROM, STRUCTURES
 from assess.settings import CLASS_BY, SCENARIOS
@@ -253,6 +253,9 @@ ITEMS = Sheet(
         Column("against_wall", "Against wall", "flag", "yes: one of its long sides stands against a wall, so that it "
                "falls away from it. Which side that is follows from X, Y, Angle and the Outline of its room in Places.",
                choices=(YES, NO), default="not known: it may fall either way", width=10),
+        Column("mobile", "Mobile", "flag", "yes: it stands on castors and rolls away before it overturns, so it is counted "
+               "apart, but for slender pieces.", choices=(YES, NO), default="the Type's in the Catalogue, else not known",
+               width=9),
         Column("weight", "Weight", "number", "With what it holds: gives the force on its bracket.",
                **_WEIGHT | {"usual_low": 1, "usual_high": 3000}, default="the Type's in the Catalogue, else estimated, assumed",
                width=9),
@@ -327,6 +330,10 @@ CATALOGUE = Sheet(
         Column("weight", "Weight", "number", "With what it holds.", **_WEIGHT, default="not known", width=9),
         Column("centre_of_gravity", "Centre of gravity", "number", "Height of the centre of gravity above the floor, "
                "as a share of the height.", **_CENTRE, default="50", width=10),
+        Column("fix_by", "Fix by", "choice", "How pieces of this type can be fixed: for the list of what to fix.",
+               choices=tuple(FIX_BY), default="wall bracket, or base angle where no wall is near", width=14),
+        Column("mobile", "Mobile", "flag", "yes: pieces of this type stand on castors.", choices=(YES, NO),
+               default="not known", width=9),
         Column("source", "Source", "text", "Where the values come from; assumed: no citable source prints them.",
                width=60),
     ),

@@ -33,6 +33,7 @@ def draw_bars(counts: Sequence[Counts], title: str, most: int = MOST) -> tuple[I
         looks += [
             (words.UNCONFIRMED, words.APART_FILL, words.INK, one.unconfirmed),
             (words.BY_FORMULA, words.APART_FILL, words.INK, one.by_formula),
+            (words.ROLLING, words.APART_FILL, words.INK, one.rolls),
             (words.ANCHORED, words.ANCHORED_FILL, words.INK, one.anchored),
         ]
         x = LABEL

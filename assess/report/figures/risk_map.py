@@ -13,7 +13,7 @@ from assess.report import words
 from assess.report.blocks import Figure
 from assess.report.figures.draw import HATCHES, build_figure, draw, label
 from assess.report.figures.labels import Point, box_around, is_inside, overlap
-from assess.results import ItemResult, Results, count_pieces
+from assess.results import ROLLS, ItemResult, Results, count_pieces
 from assess.risk import LIMITS, RiskClass
 from assess.units import ROUNDING
 
@@ -29,7 +29,7 @@ PANEL = (148.0, 190.0)
 """About the size of a panel of three [points], by which texts are kept off each other."""
 MARKERS = {RiskClass.LOW: "o", RiskClass.MEDIUM: "D", RiskClass.HIGH: "^", RiskClass.VERY_HIGH: "s"}
 """The symbols of the classes, as matplotlib names them."""
-APART = {"unconfirmed": "p", "formula": "v"}
+APART = {"unconfirmed": "p", "formula": "v", ROLLS: "8"}
 """Those of pieces that stand apart from the simulated ones, without a class's colour."""
 LETTER, LINE, GAP = 3.7, 7.0, 5.0
 """About the width of a letter and the height of a line of 6 points, and a text's distance from a symbol."""

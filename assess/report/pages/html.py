@@ -92,6 +92,7 @@ def render(
     filters = [(class_name(risk), risk_label(risk)) for risk in RiskClass]
     filters += [("apart-unconfirmed", apart_label("unconfirmed"))] if total.unconfirmed else []
     filters += [("apart-formula", apart_label("formula"))] if total.by_formula else []
+    filters += [("apart-rolls", apart_label("rolls"))] if total.rolls else []
     filters += [("anchored", _("anchored"))]
     filters, script = filters if content.results else [], options.read("script/report.js")
     return render_document(document, options, script=script, filters=filters, progress=progress)

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from assess.i18n import gettext as _, ngettext
 from assess.report import words
-from assess.results import ItemResult, count_pieces
+from assess.results import ROLLS, ItemResult, count_pieces
 from assess.risk import RiskClass
 from assess.text import natural_key
 from assess.workbook.schema import BUILDING
@@ -67,6 +67,11 @@ def say_apart(results: Sequence[ItemResult]) -> list[str]:
                         "{n:,} pieces were not simulated and are counted apart, by formula only.",
                         count_pieces(left))  # fmt: skip
         texts.append(_add_risky(text, left))
+    if rolling := list_apart(results, ROLLS):
+        texts.append(ngettext(
+            "{n:,} piece stands on castors and rolls, which is not covered: it is in no class and no sum ({names}).",
+            "{n:,} pieces stand on castors and roll, which is not covered: they are in no class and no sum ({names}).",
+            count_pieces(rolling), names=words.name_pieces([one.item.item for one in rolling], 3)))  # fmt: skip
     return texts
 
 

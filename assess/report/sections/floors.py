@@ -39,7 +39,12 @@ def build_floors(view: View) -> blocks.Section:
 
 def _build_floor(view: View, page: FloorPage, at: int) -> blocks.Box:
     plan, risky, counts = view.plans.get(page.floor.floor), list_risky(page.results), page.counts
-    apart = (("unconfirmed", counts.unconfirmed), ("formula", counts.by_formula), ("anchored", counts.anchored))
+    apart = (
+        ("unconfirmed", counts.unconfirmed),
+        ("formula", counts.by_formula),
+        ("rolls", counts.rolls),
+        ("anchored", counts.anchored),
+    )
     classes = [f"{words.risk_label(risk)} {counts.say(risk)}" for risk in reversed(RiskClass)]
     classes += [f"{words.apart_label(name)} {pieces:,}" for name, pieces in apart if pieces]
     counted = _("{pieces}: {classes}; expected falls {falls}.", pieces=words.plural(counts.total, "piece"),
@@ -224,6 +229,8 @@ def _count_floors(view: View) -> blocks.Table:
         further.append(([f"{words.UNCONFIRMED} ", blocks.BREAK, _("unconfirmed")], "w10", "unconfirmed"))
     if total.by_formula:
         further.append(([f"{words.BY_FORMULA} ", blocks.BREAK, _("by formula only")], "w8", "by_formula"))
+    if total.rolls:
+        further.append(([f"{words.ROLLING} ", blocks.BREAK, _("rolls")], "w8", "rolls"))
     further += [(_("Anchored"), "w10", "anchored"), (_("All"), "w8", "total")]
 
     def list_cells(counts: Counts, *, is_total: bool = False) -> Iterator[blocks.Words]:

@@ -49,6 +49,7 @@ def build(view: View) -> blocks.Section:
     for kind, name, pieces, note in (
         ("apart-unconfirmed", "unconfirmed", total.unconfirmed, _("counted apart")),
         ("apart-formula", "formula", total.by_formula, _("not simulated")),
+        ("apart-rolls", "rolls", total.rolls, _("on castors, not covered")),
         ("anchored", "anchored", total.anchored, _("not classified")),
     ):
         if pieces or kind == "anchored":

@@ -14,13 +14,14 @@ from xlsxwriter.utility import xl_col_to_name
 from assess.i18n import gettext as _
 from assess.methods import MethodInfo
 from assess.model import AXES
-from assess.results import CANNOT_ROCK
+from assess.report import words
+from assess.results import CANNOT_ROCK, ROLLS
 from assess.risk import RiskClass
 from assess.workbook import formulas as live
 from assess.workbook.formulas import say_class
 
-ANCHORED = "⚓ "
-"""Mark before the class of an anchored piece, which is that of the piece without its anchor; it is not coloured."""
+ANCHORED, ROLLING = "⚓ ", f"{words.ROLLING} "
+"""Marks before the class of a piece that is anchored, or rolls: that of it without anchor or castors; uncoloured."""
 LIMITS = ("limit_medium", "limit_high", "limit_very_high")
 """Names of the cells that hold the limits of the classes."""
 ROW = "\x00"
@@ -84,7 +85,7 @@ def build_terms() -> Terms:
     """Return the terms in the language in use."""
     bases = {
         "simulated": _("simulated"), "formula": _("formula (not simulated)"), "unconfirmed": _("unconfirmed"),
-        CANNOT_ROCK: _("cannot rock"),
+        CANNOT_ROCK: _("cannot rock"), ROLLS: _(words.BASES[ROLLS]),
     }  # fmt: skip
     return Terms(
         yes=_("yes"), no=_("no"), partly=_("partly"), edited=_("edited"), check=_("check"), again=_("run again"),
@@ -106,14 +107,13 @@ class ItemFormulas:
     ) -> None:  # fmt: skip
         self._cells, self._floors, self._last, self._lowest = cells, floors, last, lowest
         self._terms, self._formula, self._paper = terms, formula, paper
-        words = {
+        texts = {
             "YES": terms.yes, "NO": terms.no, "PARTLY": terms.partly, "EDITED": terms.edited, "CHECK": terms.check,
             "AGAIN": terms.again, "LOW": terms.labels[0], "CANNOT_ROCK": terms.bases[CANNOT_ROCK],
             "BY_FORMULA": terms.bases["formula"], "ANCHORED": ANCHORED,
         }  # fmt: skip
-        self._known = {**cells, **{name: literal(word) for name, word in words.items()}}
+        self._known = {**cells, **{name: literal(word) for name, word in texts.items()}}
         self._known |= {
-            "MARK": self._fill('IF({held}={YES},{ANCHORED},"")'),
             "START": self._fill("{rocks_from_run}*{breadth_to_height}*50/{centre_of_gravity}"),
             "IS_SLENDER": live.is_slender(cells["breadth_to_height"], f"{cells['centre_of_gravity']}/100"),
             # whether it depends on a bracket of known capacity, now or as run, if the piece counts as anchored
@@ -133,6 +133,8 @@ class ItemFormulas:
         `is_run`: whether it holds for the inputs as run alone; else it follows its inputs, unless they may change
         whether its bracket holds.
         """
+        mark = literal(ROLLING if basis == ROLLS else "")
+        self._known["MARK"] = self._fill("IF({held}={YES},{ANCHORED},{mark})", mark=mark)
         found = self._of_any(is_run=is_run)
         if is_run:
             found |= self._of_run(basis)
@@ -181,7 +183,7 @@ class ItemFormulas:
             "class": while_as_run(f"{mark}&{label(rank)}", again),
             "class_upper": while_as_run(f"{mark}&{label(upper)}"),
             "class_notes": while_as_run(f"MID({'&'.join(texts)},3,300)"),
-            "rank_formula": while_as_run(rank if basis == CANNOT_ROCK else _rank(cells["formula_run"])),
+            "rank_formula": while_as_run(rank if basis in (CANNOT_ROCK, ROLLS) else _rank(cells["formula_run"])),
             f"order_{basis}": self._order(rank, upper, cells["chance_run"]),
         }  # fmt: skip
         if basis == "simulated":

@@ -23,6 +23,7 @@ from assess.report.xlsx.item_formulas import (
     AT_RUN,
     BRACKET,
     CLASS_WEIGHT,
+    ROLLING,
     ROW,
     SAME,
     SAME_WORDS,
@@ -31,7 +32,7 @@ from assess.report.xlsx.item_formulas import (
     live_formulas,
 )
 from assess.report.xlsx.pen import CHANCE, COUNT, HEAD, LINE, Column, Pen, count_lines, of_field, refer, widen
-from assess.results import BASES, CANNOT_ROCK, CaseRow, ItemResult, MethodResult, Results
+from assess.results import BASES, CANNOT_ROCK, ROLLS, CaseRow, ItemResult, MethodResult, Results
 from assess.risk import RiskClass, classify
 from assess.table import Field
 from assess.workbook.formulas import OUTSIDE, say_class
@@ -52,7 +53,7 @@ INPUTS = (*FRONT[FRONT.index("quantity") :], *BRACKET)
 """Those to edit."""
 UNDER_MOTION = ("breadth_to_height", "axis", "pfa_g", "pfv_cm_s")
 """The fields that formulas compute under the motion that governs."""
-LISTED = tuple(basis for basis in BASES if basis != CANNOT_ROCK)
+LISTED = tuple(basis for basis in BASES if basis not in (CANNOT_ROCK, ROLLS))
 """What has a list of the pieces most likely to fall."""
 ORDERS = tuple(f"order_{basis}" for basis in LISTED)
 """Columns that hold the order of the pieces: each basis has its own list."""
@@ -109,6 +110,8 @@ def chance_behind(one: ItemResult, *, is_ideal: bool) -> float | None:
 
     def chance(case: CaseRow) -> float:
         formula, found, adopted = case.methods[one.formula_key].value or 0.0, case.simulation, case.adopted
+        if adopted.basis == ROLLS:
+            return adopted.probability
         if adopted.is_unconfirmed and adopted.has_simulated:
             return max(adopted.probability, (found and found.if_faster) or 0.0)
         if found is None or adopted.is_simulated:  # the adopted one may be that of a fall along either axis
@@ -148,7 +151,11 @@ def under_record(one: ItemResult) -> str:
 def _class(one: ItemResult, risk: RiskClass, found: MethodResult | None = None) -> str:
     """Return a class as the sheet shows it, marked where the method that gave it was not checked."""
     is_outside = found is not None and one.adopted.can_rock and "extrapolated" in found.flags
-    return (ANCHORED if one.is_anchored else "") + say_class(risk) + OUTSIDE * is_outside
+    return (
+        (ANCHORED if one.is_anchored else ROLLING if one.apart == ROLLS else "")
+        + say_class(risk)
+        + OUTSIDE * is_outside
+    )
 
 
 def class_in_force(one: ItemResult) -> str:
@@ -412,12 +419,12 @@ def _list_comments() -> dict[str, str]:
                         "counts, lists and charts. So does a row held by a bracket of known capacity, and also once "
                         "its bracket or weight is edited."),
         "class_formula": _("By the limits in Assumptions. * behind a class: outside the range in which the formula was "
-                           "checked. ⚓ before it: anchored, so its risk depends on its anchor; the class is that of "
-                           "the piece without it."),
+                           "checked. ⚓ before it: anchored, so its risk depends on its anchor; ◎: on castors, so it "
+                           "rolls; the class is that of the piece without them."),
         "basis": _("What the class rests on. simulated: the chance found by simulation. formula (not simulated): the "
                    "published formula, as nothing was simulated. unconfirmed: nothing is known of the building; or the "
                    "formula, as simulation gave a lower class under motions that are too weak. The three are never "
-                   "added up. cannot rock: low; counted with the run."),
+                   "added up. cannot rock: low; counted with the run. rolls: on castors, in no count of classes."),
         "beside": _("For comparison. In an earthquake like this one: motion and piece differ from draw to draw. If "
                     "exactly this motion recurred: the piece exactly as given, under motions with the spectrum of this "
                     "one."),

@@ -32,12 +32,12 @@ from assess.report.xlsx.items_sheet import (
     say_inputs_that_settle,
 )
 from assess.report.xlsx.pen import CHANCE, HEAD, LINE, Pen, count_lines, refer, row_height
-from assess.results import CANNOT_ROCK, ItemResult, count_pieces
+from assess.results import CANNOT_ROCK, ROLLS, ItemResult, count_pieces
 from assess.risk import RiskClass
 from assess.workbook.formulas import OUTSIDE
 
-WIDTHS = (34, 14, 14, 14, 14, 14, 14, 14, 44)
-"""Of the columns of the summary that are printed: of names, of numbers, and of classes."""
+WIDTHS = (34, 14, 14, 14, 14, 14, 14, 14, 44, 14)
+"""Of the columns of the summary that are printed: of names, of numbers, of classes, and of all pieces."""
 LAST = len(WIDTHS) - 1
 
 PLACE, CHANCES = LAST + 1, LAST + 2
@@ -257,8 +257,8 @@ def _draw(plan: _Plan, row: int, worst: Mapping[str, Found]) -> None:
 
 
 def _list_apart() -> list[str]:
-    """Return what is counted without a class: rows to be run again, anchored pieces, and all pieces."""
-    return [_("run again"), _("anchored"), _("all")]
+    """Return what is counted without a class: rows to be run again, pieces that roll, anchored pieces, and all."""
+    return [_("run again"), _(words.BASES[ROLLS]), _("anchored"), _("all")]
 
 
 def _count_as_run(results: Sequence[ItemResult], basis: str) -> list[int]:
@@ -270,7 +270,8 @@ def _count_as_run(results: Sequence[ItemResult], basis: str) -> list[int]:
 def _count_apart(results: Sequence[ItemResult]) -> list[int]:
     """Return the numbers of `_list_apart` as run."""
     anchored = count_pieces(one for one in results if one.is_anchored)
-    return [0, anchored, count_pieces(results)]
+    rolls = count_pieces(one for one in results if one.apart == ROLLS and not one.is_anchored)
+    return [0, rolls, anchored, count_pieces(results)]
 
 
 def _write_floors(plan: _Plan, basis: str) -> None:
@@ -299,7 +300,8 @@ def _write_floors(plan: _Plan, basis: str) -> None:
         formulas.append(f"=SUM(B{row + 1}:{xl_col_to_name(SUM - 1)}{row + 1})")
         values = _count_as_run(floor.results, basis)
         if is_first:  # what has no class on a floor, and all pieces
-            apart = [f"{on_floor}*{again}", f"{on_floor}*(1-{again})*{anchored}"]
+            rolls = f"(1-{anchored})*({areas['basis']}={literal(terms.bases[ROLLS])})"
+            apart = [f"{on_floor}*{again}", f"{on_floor}*{rolls}", f"{on_floor}*(1-{again})*{anchored}"]
             sums = [f"{letter}{plan.tables[one] + 2 + number}" for one in plan.bases]
             sums += [f"{xl_col_to_name(SUM + at)}{row + 1}" for at in range(1, 1 + len(apart))]
             formulas += [*(f"=SUMPRODUCT({one},{quantity})" for one in apart), f"={'+'.join(sums)}"]
