@@ -1,4 +1,4 @@
-"""The force that an anchored piece brings to its bracket, and the force that the code asks for.
+"""The force that an anchored piece brings to its bracket, and the force that a code asks for.
 
 A piece of weight W turns about its toe; a bracket at height h holds it back. For a horizontal acceleration k and an
 upward one k_v, both as shares of g, moments about the toe give the tension T = W [k z - (1 - k_v) B/2]/h, and nothing
@@ -9,6 +9,10 @@ References
 ----------
 ASCE/SEI 7-22, Minimum Design Loads and Associated Criteria for Buildings and Other Structures, section 13.3.1:
 F_p = 0.4 S_DS I_p W (H_f/R_mu)(C_AR/R_po), at least 0.3 and at most 1.6 S_DS I_p W. As in public implementations of it.
+EN 1998-1:2004, 4.3.5.2: F_a = S_a W_a gamma_a/q_a, S_a = alpha S [3 (1 + z/H)/(1 + (1 - T_a/T_1)^2) - 0.5], at least
+alpha S. From memory: not checked against the code's own text.
+NTC 2018, 7.2.3, eq. (7.2.1): F_a = S_a W_a/q_a; where nothing specific is known, S_a and q_a may follow "documenti di
+comprovata validita", here EN 1998-1. From a public transcription of the clause.
 """
 
 import numpy as np
@@ -74,6 +78,25 @@ def find_code_demand(
     amplification = PROFILES["ASCE 7-22"].amplification(height_ratio, period)
     share = 0.4 * amplification / reduction * resonance / strength
     return sds * importance * min(max(share, LEAST), MOST)
+
+
+def find_european_demand(
+    *, ground: float, height_ratio: float, behaviour: float, importance: float = 1.0, element_period: float = 0.0,
+    period: float | None = None,
+) -> float:  # fmt: skip
+    """Return F_a/W_a by EN 1998-1, 4.3.5.2 [-]; ValueError if the height ratio is not between 0 and 1.
+
+    `ground`: alpha S, over g [-]; `height_ratio`: z/H of the floor; `behaviour`: q_a; `importance`: gamma_a, 1 by NTC
+    2018; `element_period`: T_a of the piece [s]; `period`: T_1 of the building [s], None where it is not known: the
+    piece is then taken to be at resonance, unless T_a is 0.
+    """
+    if not 0 <= height_ratio <= 1:
+        raise ValueError(f"height_ratio is {height_ratio}, expected 0 to 1")
+    detuning = 1 - element_period / period if period else float(element_period == 0)
+    # Equation (4.25)
+    share = 3 * (1 + height_ratio) / (1 + detuning**2) - 0.5
+    # Equation (4.24)
+    return ground * max(share, 1.0) * importance / behaviour
 
 
 def _check_height(height: FloatArray) -> None:

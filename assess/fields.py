@@ -16,7 +16,7 @@ from assess.details import DETAILS
 from assess.errors import Problem
 from assess.i18n import fill
 from assess.methods import MethodInfo
-from assess.model import ANCHORED, AXES, IMPORTANCE, SIZES_FROM
+from assess.model import ANCHORED, AXES, COST_PER, IMPORTANCE, SIZES_FROM
 from assess.results import BASES, BRANCHES, ItemResult, ItemRow, Results
 from assess.risk import RiskClass
 from assess.route_results import Chance, PieceRef, RoomRow, RouteRow, SegmentRow
@@ -239,7 +239,7 @@ ANCHOR_FIELDS = (
     _of_anchor("tension_without_weight_kn", fill("Tension without the help of the weight")),
     _of_anchor("shear_kn", fill("Shear at the base")),
     _of_anchor("tension_code_kn", fill("Tension by the code"),
-        help="For F_p of ASCE 7-22, where SDS or Ground PGA is known."),
+        help="By `anchor_code` of the run, where a ground motion is known for it."),
     _of_anchor("shear_code_kn", fill("Shear by the code")),
     _of_anchor("needed_friction", fill("Friction needed at the base"), unit="", shows=DATA,
         help="Coefficient below which the base of the held piece slides at PFA."),
@@ -463,7 +463,7 @@ WORK_FIELDS = (
         "its breadth."),
     _force("tension_high_kn", fill("Tension at 84 % of PFA"), fill("T at 84 %")),
     _force("tension_code_kn", fill("Tension by the code"), fill("T by code"), is_optional=True,
-        help="For F_p of ASCE 7-22; null where neither SDS nor Ground PGA is known."),
+        help="By `anchor_code`; null where no ground motion is known for a code."),
     _force("shear_kn", fill("Shear at the base"), fill("Shear"), help="Of each piece at PFA."),
     _work("fixings", "count", fill("Fixings each"), width=8,
         help="Of one piece, by the larger of the tensions at 84 % and by the code over the printed capacity of one."),
@@ -476,7 +476,8 @@ WORK_FIELDS = (
     _work("heights_assumed", "count", help="Pieces whose bracket height is assumed."),
     _work("is_per_metre", "flag", help="Whether forces are those of one metre of a piece, as its width is not known."),
     _work("unit_cost", "number", fill("Unit cost"), width=10, is_optional=True,
-        help="Of one piece, of the sheet Costs."),
+        help="Of what `cost_per` says, of the sheet Costs, in the schedule's currency."),
+    _work("cost_per", label=fill("Unit cost per"), width=8, choices=("", *COST_PER)),
     _work("cost", "number", fill("Cost"), width=10, is_optional=True),
     _work("cost_source", label=fill("Source of the cost"), width=24),
     _work("hours", "number", fill("Hours"), width=8, help="Of work on all its pieces, of all people: assumed."),

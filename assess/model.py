@@ -33,6 +33,11 @@ SIZES_FROM = ("measured", "model", "scan")
 """Where the sizes of a piece come from: of those of a scan base and height are drawn wider."""
 MEASURED, SCANNED = SIZES_FROM[0], SIZES_FROM[-1]
 IMPORTANCE = ("life safety", "function", "property")
+UNITS = ("workbook's", "SI", "US")
+"""Units of the reports."""
+LEVELS = ("0", "1", "2", "3")
+COST_PER = ("piece", "fixing")
+TEXT_SECTIONS = ("Summary", "What to believe", "What to fix", "Ways out", "Floors", "Limits")
 STRUCTURES = ("frame", "walls", "dual", "timber", "masonry", "unknown")
 
 NEAR_AXIS = 15.0  # up to this angle [deg] from an axis a piece, or a record, counts as lying along it
@@ -72,7 +77,8 @@ class Building:
     `azimuth_deg` is clockwise from north, `latitude` and `longitude` in degrees, north and east positive. `structure`
     is one of `STRUCTURES`, `shaking` a key of `assess.intensity.SHAKINGS`; `shakemap` and `hazard` name files.
     `motion_uncertainty` is a standard deviation of ln PFA [-], `piece_uncertainty` whether pieces vary from one
-    simulated earthquake to the next. `cells` tells in which cell of the sheet a field stands.
+    simulated earthquake to the next. `report_units` is "SI" or "US", those of the workbook where its line is blank;
+    `anchor_code` is one of `assess.settings.ANCHOR_CODES`. `cells` tells in which cell of the sheet a field stands.
     """
 
     building: str = ""
@@ -92,6 +98,15 @@ class Building:
     revision: str = ""
     report_date: str = ""
     organisation: str = ""
+    licence: str = ""
+    project_number: str = ""
+    survey_date: str = ""
+    surveyed_by: str = ""
+    extent: str = ""
+    rooms_not_entered: str = ""
+    investigation_level: str = ""
+    documents: str = ""
+    purpose: str = ""
     logo: Path | None = None
     scenario: str = ""
     scenario_kind: str = ""
@@ -99,6 +114,7 @@ class Building:
     ground_pga: float | None = None
     ground_pgv: float | None = None
     sds: float | None = None
+    anchor_code: str = ""
     shakemap: str = ""
     shaking: str = ""
     hazard: str = ""
@@ -107,6 +123,7 @@ class Building:
     motion_uncertainty: float | None = None
     piece_uncertainty: bool | None = None
     language: str = ""
+    report_units: str = ""
     cells: Mapping[str, str] = field(default_factory=dict)
 
     @property
@@ -344,12 +361,26 @@ class CatalogueType:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cost:
-    """What it costs to fix one piece in the way that `detail` names, in the workbook's currency."""
+    """What it costs to fix one piece in the way that `detail` names, or one fixing of it: `per`, one of `COST_PER`.
+
+    `currency` is an ISO code, "" where the workbook names none.
+    """
 
     row: int
     detail: str
     unit_cost: float
+    currency: str = ""
+    per: str = COST_PER[0]
     source: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Passage:
+    """A paragraph of the surveyor's own for a section of the report, one of `TEXT_SECTIONS`: data, never markup."""
+
+    row: int
+    section: str = TEXT_SECTIONS[0]
+    text: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -373,6 +404,7 @@ class Inventory:
     routes: tuple[Segment, ...] = ()
     catalogue: tuple[CatalogueType, ...] = ()
     costs: tuple[Cost, ...] = ()
+    texts: tuple[Passage, ...] = ()
     problems: tuple[Problem, ...] = ()
     extra_columns: tuple[str, ...] = ()
     hazard: HazardCurve | None = field(default=None, compare=False)

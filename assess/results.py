@@ -1050,6 +1050,7 @@ class Provenance:
       computed with.
     * `workbook`, `sha256`, `files`: The workbook, its hash, and the hashes of the other files by name.
     * `scenario`: Where the floor motion came from, one of `assess.settings.SCENARIOS`.
+    * `anchor_code`: The code of the force on anchors, one of `assess.settings.ANCHOR_CODES`; "" where it is not known.
     * `uncertainty`: What was drawn of the earthquake and of the pieces; `earthquakes` how that depends on the place and
       on scenarios, None where it does not.
     * `shaking`, `site_ground`, `suite`: The intensity that was assumed, the ShakeMap or scenarios, and the user's own
@@ -1068,6 +1069,7 @@ class Provenance:
     sha256: str
     files: Mapping[str, str]
     scenario: str
+    anchor_code: str
     uncertainty: Uncertainty
     earthquakes: EarthquakeDraws | None
     shaking: Shaking | None
@@ -1112,6 +1114,7 @@ class Results:
     * `worked`: What each method computes for the piece `worked_item` (its index), step by step.
     * `series`: Where series for figures lie.
     * `schedule`: What to fix, with what, and what is to be expected before and after.
+    * `texts`: The surveyor's own paragraphs, each with its section of the report: data, never markup.
     """
 
     settings: Settings
@@ -1132,6 +1135,7 @@ class Results:
     worked_item: int | None
     series: Series
     schedule: Schedule = NOTHING
+    texts: tuple[tuple[str, str], ...] = ()
     draws: DrawTable = field(default_factory=lambda: NO_DRAWS)
 
     items: ClassVar = Frame("One row an item, with the columns of items.csv.")

@@ -31,6 +31,7 @@ class WorkRow:
     is_per_metre: bool
     unit_cost: float | None
     cost: float | None
+    cost_per: str
     cost_source: str
     hours: float
 
@@ -137,7 +138,8 @@ class PhaseRow:
 class Schedule:
     """What to fix, the most urgent first, and what is to be expected before and after phases A and B.
 
-    `checks` are of pieces that are anchored, or that roll: to look at, or to park; `phases` are those of `rows`.
+    `checks` are of pieces that are anchored, or that roll: to look at, or to park; `phases` are those of `rows`; `currency` is an
+    ISO code, "" where the workbook names none.
     """
 
     rows: tuple[ScheduleRow, ...]
@@ -145,6 +147,7 @@ class Schedule:
     after: State
     checks: tuple[ScheduleRow, ...] = ()
     phases: tuple[PhaseRow, ...] = ()
+    currency: str = ""
 
     @property
     def planned(self) -> tuple[ScheduleRow, ...]:

@@ -32,6 +32,9 @@ SCENARIOS: tuple[str, ...] = get_args(Scenario)
 """Source of the floor motion: as filled, floor by floor a record, then given PFA and PFV, then between the floors
 above and below, then a code's profile; or records alone, given peaks alone, or one profile on every floor."""
 
+ANCHOR_CODES = ("ASCE 7-22", "EN 1998-1", "NTC 2018")
+"""Codes that give the force on anchors; the first where neither the workbook nor its scenario names one of them."""
+
 ClassBy = Literal["best formula", "proposed OR"]
 CLASS_BY: tuple[str, ...] = get_args(ClassBy)
 """Which formula gives the class of what is not simulated: that which agrees best with simulation, or the paper's."""
@@ -111,6 +114,8 @@ _RULES: Mapping[str, _Rule] = {
     "anchor_resonance": _POSITIVE,
     "anchor_strength": _POSITIVE,
     "anchor_importance": _POSITIVE,
+    "anchor_behaviour": _POSITIVE,
+    "anchor_period": _number(lambda number: number >= 0, fill("0 or above, and finite")),
     "route_risk": _number(lambda number: 0 < number < 1, fill("above 0 and below 1 (write 3 % as 0.03)")),
 }  # fmt: skip
 """What reads the value of each setting, None for one that cannot be used, and what was expected."""
@@ -148,7 +153,9 @@ class Settings:
       schedule are; also as one text, ``"25-07, 25-08"`` or ``"first:3"``.
     * `anchor_resonance`, `anchor_strength`, `anchor_importance`: C_AR, R_po and I_p of ASCE 7-22, 13.3.1, for the force
       that the code asks of anchors [-]. 1.0 and 1.5 are those of its table 13.5-1 for storage cabinets, shelving and
-      laboratory equipment, as public implementations have it.
+      laboratory equipment, as public implementations have it. I_p stands for gamma_a of EN 1998-1, too.
+    * `anchor_behaviour`, `anchor_period`: q_a [-] and T_a [s] of EN 1998-1, 4.3.5. q_a 2.0 is that of the anchorage of
+      cabinets and book stacks; T_a 0, of a piece that moves with the wall, is assumed.
     * `route_risk`: Limit on the chance that an evacuation route is blocked [-], above 0 and below 1: a route is open
       where the upper end of its interval is below it, and fixes are sought until that holds. 0.03 is where the class
       low ends.
@@ -174,6 +181,8 @@ class Settings:
     anchor_resonance: float = 1.0
     anchor_strength: float = 1.5
     anchor_importance: float = 1.0
+    anchor_behaviour: float = 2.0
+    anchor_period: float = 0.0
     route_risk: float = ROUTE_RISK
 
     def __post_init__(self) -> None:

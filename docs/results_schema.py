@@ -26,11 +26,11 @@ from assess.fields import (
     STATE_FIELDS,
     item_fields,
 )
-from assess.model import AXES
+from assess.model import AXES, TEXT_SECTIONS
 from assess.report.data import SCHEMA, VERSION, building_key
 from assess.results import EarthquakeDraws, Provenance
 from assess.risk import RiskClass
-from assess.settings import MOST_SCALE, SCENARIOS, Settings
+from assess.settings import ANCHOR_CODES, MOST_SCALE, SCENARIOS, Settings
 from assess.table import Field, Tree, build_tree
 from assess.workbook.schema import BUILDING
 
@@ -61,6 +61,8 @@ def build_schema() -> Schema:
         "items": _list(_ref("item")),
         "routes": _of_row(rows.RouteTables),
         "schedule": _schedule(),
+        "texts": _list(_object({"section": {"enum": list(TEXT_SECTIONS)}, "text": TEXT}))
+        | {"description": "The surveyor's own paragraphs, in their order: data, never markup."},
         "annual": _or_null(_of_row(AnnualTables))
         | {"description": "What annual chances rest on, and those of the building; null: no Hazard file was given."},
         "problems": _list(_of_row(Problem) | {"description": "Warnings and notes about the input."}),
@@ -170,6 +172,7 @@ def _schedule() -> Schema:
         "before": state,
         "after": state | {"description": "With the pieces of phases A and B anchored, and their anchors holding."},
         "cost": _or_null({"type": "number"}) | {"description": "Sum of the costs that are known."},
+        "currency": TEXT | {"description": "ISO code of the currency of all costs; empty: the workbook names none."},
         "entries_without_cost": COUNT,
     })  # fmt: skip
     return made | {"description": "What to fix, with what, and what it changes: screening, not design."}
@@ -183,6 +186,8 @@ def _assess() -> Schema:
             "code": HASH | {"description": "SHA-256 over the program's modules and tables."},
             "seed": COUNT | {"description": "Of the generated motions."},
             "settings": _of_row(Settings),
+            "anchor_code": {"enum": ["", *ANCHOR_CODES]}
+            | {"description": "Code of the force on anchors; empty: no ground motion is known for one."},
             "uncertainty": _of_row(UNCERTAINTY) | {"description": "What the draws of the simulation vary."},
             "earthquakes": _or_null(_of_row(EarthquakeDraws))
             | {"description": "How draws of the earthquake depend on the place and on scenarios; null: they do not."},

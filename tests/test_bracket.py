@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from assess.bracket import find_code_demand, find_needed_friction, find_tension, find_tension_without_weight
+from assess.bracket import (
+    find_code_demand,
+    find_european_demand,
+    find_needed_friction,
+    find_tension,
+    find_tension_without_weight,
+)
 
 PIECE = {"weight": 1.2, "centre": 0.90, "height": 1.70}
 """A cabinet of 1.2 kN, 0.40 m deep, held at 1.70 m."""
@@ -40,9 +46,22 @@ def test_demand_of_the_code_of_physics_f():
     assert [low, high] == pytest.approx([0.3, 1.6]), "it has a least and a most"
 
 
+def test_demand_of_en_1998_1():
+    """On the roof 2.5 alpha S of a rigid piece and 5.5 alpha S at resonance; never less than alpha S."""
+    roof = {"ground": 0.2, "height_ratio": 1, "behaviour": 1}
+    assert find_european_demand(**roof) == pytest.approx(2.5 * 0.2)
+    assert find_european_demand(**roof, element_period=0.8, period=0.8) == pytest.approx(5.5 * 0.2)
+    assert find_european_demand(**roof, element_period=0.8) == pytest.approx(5.5 * 0.2), "T_1 is not known"
+    assert find_european_demand(**roof | {"behaviour": 2}, importance=1.5) == pytest.approx(2.5 * 0.2 * 1.5 / 2)
+    low = find_european_demand(ground=0.2, height_ratio=0, behaviour=1, element_period=4, period=0.5)
+    assert low == pytest.approx(0.2)
+
+
 def test_what_cannot_be():
     for height in (0.0, -1.0, np.nan):
         with pytest.raises(ValueError, match="above 0"):
             find_tension(weight=1, acceleration=1, breadth=0.4, centre=0.9, height=height)
     with pytest.raises(ValueError, match="expected 0 to 1"):
         find_code_demand(sds=1, height_ratio=1.2, resonance=1, strength=1.5)
+    with pytest.raises(ValueError, match="expected 0 to 1"):
+        find_european_demand(ground=1, height_ratio=1.2, behaviour=2)

@@ -2,8 +2,9 @@
 
 The demand of the scenario: the piece turns about its toe under the peak floor acceleration that governs it, without
 vertical motion, helped by its own weight; at 16 % and 84 % of the scatter of that acceleration too, and without the
-help of the weight, which is an upper bound. The demand of the code: F_p of ASCE 7-22, 13.3.1, with 0.2 S_DS upward,
-where SDS or Ground PGA is known. `assess.bracket` has the equations.
+help of the weight, which is an upper bound. The demand of the code that `find_anchor_code` tells: F_p of ASCE 7-22,
+13.3.1, with 0.2 S_DS upward, or F_a of EN 1998-1, 4.3.5.2, or of NTC 2018, 7.2.3, without vertical motion; where SDS or
+Ground PGA is known, or a code is chosen and a map or an intensity gives PGA. `assess.bracket` has the equations.
 
 A partly anchored piece with a known capacity counts as anchored where its bracket carries the demand of 84 %, and
 stands free where it does not (elastic-brittle, after Majdalaweyh and Pang 2022). An anchored piece whose bracket does
@@ -36,7 +37,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.arrays import BoolArray, FloatArray
-from assess.bracket import find_code_demand, find_needed_friction, find_tension, find_tension_without_weight
+from assess.bracket import (
+    find_code_demand,
+    find_european_demand,
+    find_needed_friction,
+    find_tension,
+    find_tension_without_weight,
+)
 from assess.errors import Problem, SettingsError
 from assess.i18n import Text, fill, join
 from assess.model import Inventory, Item
@@ -46,7 +53,7 @@ from assess.pipeline.known_ground import find_ground
 from assess.results import AnchorRow
 from assess.rocking.draws import PEAK
 from assess.schedule_results import ScheduleRow
-from assess.settings import Settings
+from assess.settings import ANCHOR_CODES, Settings
 from assess.units import FORCE, GRAVITY, LENGTH, to_edge
 from assess.workbook.catalogue import find_built_in
 from assess.workbook.names import key
@@ -131,19 +138,7 @@ def build_anchors(
     piece, capacity = _list_pieces(items, weights), _list_numbers([one.bracket_capacity for one in items])
     pfa, spread = cases.pfa[governing], find_spread(cases)[governing]
     low, middle, high = (find_tension(**piece, acceleration=k) for k in _scatter(pfa, spread))
-    building, ground, code, upward = inventory.building, find_ground(inventory), np.full(len(items), np.nan), np.nan
-    peak = building.sds if building.sds is not None else building.ground_pga
-    if peak is not None:  # F_p/W of each piece, and the code's vertical acceleration over g
-        sds = peak / GRAVITY / (1.0 if building.sds is not None else PGA_OF_SDS)
-        by_floor, upward = {}, UPWARD * sds
-        for floor in inventory.floors:
-            place = ground.find_ratio(floor)
-            ratio = 1.0 if place is None else place  # where a height is not known, as at the roof, where F_p is largest
-            by_floor[floor.floor] = find_code_demand(
-                sds=sds, height_ratio=ratio, resonance=settings.anchor_resonance, strength=settings.anchor_strength,
-                importance=settings.anchor_importance, ductility=settings.ductility_reduction, period=building.period,
-            )  # fmt: skip
-        code = np.array([by_floor[one.floor] for one in items], dtype=np.float64)
+    code, upward = _find_code(inventory, settings)
     by_code = find_tension(**piece, acceleration=code, vertical=upward)
     weight, body = piece["weight"], {name: one for name, one in piece.items() if name != "breadth"}
     is_per_metre = np.array([one.is_per_metre for one in weights], dtype=np.bool_)
@@ -174,6 +169,41 @@ def build_anchors(
         "holds_code": holds(by_code),
     }
     return [AnchorRow(**dict(zip(columns, row, strict=True))) for row in zip(*columns.values(), strict=True)]
+
+
+def find_anchor_code(inventory: Inventory, settings: Settings) -> str:
+    """Return the code that gives the force on anchors, one of `ANCHOR_CODES`; "" where no ground motion is known.
+
+    A ShakeMap, scenarios or an intensity tell it only where the workbook chooses a code.
+    """
+    building, scenario = inventory.building, settings.scenario or inventory.building.scenario_kind
+    if building.known_pga is None and not (building.anchor_code and find_ground(inventory).pga):
+        return ""
+    return building.anchor_code or (scenario if scenario in ANCHOR_CODES else ANCHOR_CODES[0])
+
+
+def _find_code(inventory: Inventory, settings: Settings) -> tuple[FloatArray, float]:
+    """Return the code's force over the weight of each piece, and its vertical acceleration over g; NaN without."""
+    building, ground, by_floor = inventory.building, find_ground(inventory), dict[str, float]()
+    code = find_anchor_code(inventory, settings)
+    pga = (building.known_pga or ground.pga or np.nan) / GRAVITY
+    sds = pga / PGA_OF_SDS if building.sds is None else building.sds / GRAVITY
+    for floor in inventory.floors:
+        place = ground.find_ratio(floor)
+        ratio = 1.0 if place is None else place  # where a height is not known, as at the roof, where it is largest
+        if code == ANCHOR_CODES[0]:
+            by_floor[floor.floor] = find_code_demand(
+                sds=sds, height_ratio=ratio, resonance=settings.anchor_resonance, strength=settings.anchor_strength,
+                importance=settings.anchor_importance, ductility=settings.ductility_reduction, period=building.period,
+            )  # fmt: skip
+        elif code:
+            by_floor[floor.floor] = find_european_demand(
+                ground=pga, height_ratio=ratio, behaviour=settings.anchor_behaviour,
+                importance=1.0 if code == "NTC 2018" else settings.anchor_importance,
+                element_period=settings.anchor_period, period=ground.building.period,
+            )  # fmt: skip
+    forces = np.array([by_floor.get(one.floor, np.nan) for one in inventory.items], dtype=np.float64)
+    return forces, UPWARD * sds if code == ANCHOR_CODES[0] else 0.0
 
 
 def _in_kn(forces: FloatArray) -> list[float | None]:

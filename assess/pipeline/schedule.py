@@ -101,7 +101,10 @@ def build_schedule(
             cost=sum(priced) if priced else None, hours=sum(one.hours for one in own), after=after,
         )  # fmt: skip
         phases.append(row_of_phase)
-    return Schedule(rows=fixes, before=before, after=after, checks=checks, phases=tuple(phases))
+    currency = next((one.currency for one in inventory.costs), "")
+    return Schedule(
+        rows=fixes, before=before, after=after, checks=checks, phases=tuple(phases), currency=currency
+    )  # fmt: skip
 
 
 def plan(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[Planned]:
@@ -280,18 +283,20 @@ def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> Wo
         codes += [] if anchor.tension_code_kn is None else [anchor.tension_code_kn * lever]
         shear.append(whole if detail.is_at_base else anchor.shear_kn)
     code = max(codes, default=None)
+    fixings = count_fixings(detail, 1000 * max(*high, code or 0.0))
     return WorkRow(
         floor=first.floor, room=first.room,
         items=tuple(one.item for one in rows),
         item_indices=tuple(one.index for one in rows),
         pieces=pieces, detail=done, like=detail.key, tension_kn=max(tension),
         tension_high_kn=max(high), tension_code_kn=code,
-        shear_kn=max(shear), fixings=count_fixings(detail, 1000 * max(*high, code or 0.0)),
+        shear_kn=max(shear), fixings=fixings,
         weights_assumed=sum(one.quantity for one in rows if one.anchor.weight_source == "estimate"),
         heights_assumed=0 if detail.is_at_base else sum(one.quantity for one in rows if one.anchor.is_height_assumed),
         is_per_metre=any(one.anchor.is_per_metre for one in rows),
         unit_cost=None if cost is None else cost.unit_cost,
-        cost=None if cost is None else pieces * cost.unit_cost,
+        cost=None if cost is None else pieces * cost.unit_cost * (fixings if cost.per == "fixing" else 1),
+        cost_per="" if cost is None else cost.per,
         cost_source="" if cost is None else cost.source, hours=pieces * DETAILS[done].hours,
     )  # fmt: skip
 

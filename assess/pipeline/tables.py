@@ -17,7 +17,7 @@ from assess.motion.record import treatment
 from assess.motion.scenario import PROFILES
 from assess.motion.spatial_field import SCATTERS
 from assess.pipeline.adopt import Assessment
-from assess.pipeline.anchors import build_anchors
+from assess.pipeline.anchors import build_anchors, find_anchor_code
 from assess.pipeline.demand import Demand, find_shaking, find_site
 from assess.pipeline.remarks import remark_on_shaking
 from assess.results import (
@@ -96,6 +96,7 @@ def build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path, 
         places=inventory.places, catalogue=inventory.catalogue, problem_rows=assessment.problems,
         underestimates=tuple(one.message for one in shaking if one.severity == "warning"),
         methods=tuple(one.info for one in assessment.methods),
+        texts=tuple((one.section, one.text) for one in inventory.texts),
         worked=() if example is None else tuple(work_example(example, assessment)), worked_item=example,
         series=Series(folder / "series.npz"), draws=DrawTable(draws, np.packbits(fell, axis=1), is_known),
     )  # fmt: skip
@@ -236,7 +237,8 @@ def build_provenance(assessment: Assessment) -> Provenance:
         version=__version__, code=find_code(),
         platform=versions(has_rocked=bool(assessment.joints), has_routes=bool(inventory.routes)),
         workbook=inventory.file_name, sha256=inventory.sha256, files=dict(inventory.files),
-        scenario=assessment.scenario, uncertainty=replace(assessment.cases.uncertainty, motion=spread),
+        scenario=assessment.scenario, anchor_code=find_anchor_code(assessment.inventory, assessment.settings),
+        uncertainty=replace(assessment.cases.uncertainty, motion=spread),
         earthquakes=earthquakes, shaking=find_shaking(demands), site_ground=find_site(demands),
         suite=None if suite is None else SuiteInfo(
             folder=suite.folder, names=tuple(name for name, _ in suite.motions), files=dict(suite.files),

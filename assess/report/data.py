@@ -58,7 +58,9 @@ def write_json(
         pairs = zip(phases, later, strict=True)
         _write_list(file, "phases", [(f'{one.removesuffix("}")}, "after": {state}}}' for one, state in pairs)], " ")
         file.write(f',\n  "before": {before},\n  "after": {after},\n  "cost": {_dump(schedule.cost)}')
+        file.write(f',\n  "currency": {_dump(schedule.currency)}')
         file.write(f',\n  "entries_without_cost": {schedule.uncosted}\n }}')
+        file.write(f',\n "texts": {_dump([{"section": one, "text": text} for one, text in results.texts])}')
         file.write(f',\n "annual": {_dump(results.annual and asdict(results.annual))},\n')
         _write_list(file, "problems", [(_dump(asdict(one)) for one in results.problem_rows)])
         file.write("\n}\n")
@@ -100,6 +102,7 @@ def describe_run(results: Results, files: Mapping[str, str | None] | None = None
             "code": origin.code,
             "seed": results.settings.seed,
             "settings": results.settings.as_record() | {"scenario": origin.scenario},
+            "anchor_code": origin.anchor_code,
             "uncertainty": asdict(origin.uncertainty),
             "earthquakes": origin.earthquakes and asdict(origin.earthquakes),
             "shaking": origin.shaking and next(Table.of(SHAKING_FIELDS, [origin.shaking]).records()),

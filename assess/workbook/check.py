@@ -15,7 +15,7 @@ from assess.units import ROUNDING
 from assess.workbook.habits import shorten
 from assess.workbook.names import find_near_name, key
 from assess.workbook.parse import Row, Table, Tables
-from assess.workbook.resolve import defined, filled_sizes, turned_axis, types_by_name
+from assess.workbook.resolve import defined, filled_sizes, name_currencies, turned_axis, types_by_name
 from assess.workbook.schema import SHAKEN
 
 Check = Callable[[Tables], Iterable[Problem]]
@@ -126,9 +126,10 @@ def check_catalogue(tables: Tables) -> Iterator[Problem]:
 
 
 def check_costs(tables: Tables) -> Iterator[Problem]:
-    """Check that each detail has one cost, and is one that the schedule prices."""
+    """Check that each detail has one cost in one currency, and is one that the schedule prices."""
     table = tables["Costs"]
     yield from check_unique(table)
+    yield from _check_currencies(table)
     found: dict[str, Row] = {}
     for row in table.with_all("detail"):
         detail = find_detail(row.get("detail"))
@@ -149,6 +150,39 @@ def check_costs(tables: Tables) -> Iterator[Problem]:
             priced = join(", ", [one.title for one in DETAILS.values() if one.key not in ALTERNATIVES])
             fix = fill("The schedule prices these: {priced}.", priced=priced)
             yield table.problem("detail", row, message, fix, "warning")
+
+
+def _check_currencies(table: Table) -> Iterator[Problem]:
+    """Report currencies that are unknown, named twice in a row, or different: their sum would mean nothing."""
+    first: tuple[str, str] | None = None
+    for row in table.rows:
+        codes = list(name_currencies(row))
+        in_cell = "currency" if row.get("currency") else "unit_cost"
+        values = {"text": row.quote("currency"), "label": table.label("currency"), "cost": table.label("unit_cost")}
+        if "" in codes:
+            fix = fill("Write its ISO code, such as EUR.")
+            yield table.problem("currency", row, fill("{label} {text} is not a known currency.", **values), fix)
+        elif len({*codes}) > 1:
+            message = fill("{cost} is in {one}, but {label} is {other}.", one=codes[0], other=codes[1], **values)
+            yield table.problem("unit_cost", row, message, fill("Write the currency once."))
+        elif codes and first and codes[0] != first[0]:
+            message = fill("the currency is {one}, but {other} in {cell}: costs in two currencies have no sum.",
+                           one=codes[0], other=first[0], cell=first[1])  # fmt: skip
+            yield table.problem(in_cell, row, message, fill("Convert all costs to one currency."))
+        elif codes:
+            first = first or (codes[0], table.cell(in_cell, row.number))
+
+
+def check_anchor_code(tables: Tables, *, is_shaken: bool = False) -> Iterator[Problem]:
+    """Report a code of anchors without a ground motion; `is_shaken`: whether the run gives that of the ground."""
+    table = tables["Building"]
+    for row in table.with_all("anchor_code"):
+        if not (is_shaken or any(table.says(row, name) for name in SHAKEN if name != "ground_pgv")):
+            message = fill("{label} is {code}, but no ground motion is known to which the code applies.",
+                           label=table.label("anchor_code"), code=row.get("anchor_code"))  # fmt: skip
+            names = [table.label(name) for name in ("sds", "ground_pga", "anchor_code")]
+            fix = fill("Fill in {sds} or {pga}, or clear {code}.", sds=names[0], pga=names[1], code=names[2])
+            yield table.problem("anchor_code", row, message, fix)
 
 
 def check_floors(tables: Tables, *, is_shaken: bool = False) -> Iterator[Problem]:

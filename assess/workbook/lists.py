@@ -50,7 +50,7 @@ Units = Literal["si", "imperial"]
 ROW = "\x00"
 """Stands for the number of the row in formulas that are the same for every row."""
 LISTS_NOTE = "Lists, units and helper columns for the drop-downs and live columns. Please leave this sheet as it is."
-ROWS = {"Floors": 100, "Items": 200, "Places": 200, "Routes": 200, "Catalogue": 200, "Costs": 50}
+ROWS = {"Floors": 100, "Items": 200, "Places": 200, "Routes": 200, "Catalogue": 200, "Costs": 50, "Text": 50}
 """Rows of each table that are prepared; a longer table is read all the same."""
 RUN_ASSESS = "run assess"
 """What the live columns show of a floor whose motion only the program computes: from a record, by interpolation, by a

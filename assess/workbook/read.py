@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from assess.errors import InputError, Problem, WorkbookError
 from assess.i18n import fill
-from assess.model import CatalogueType, Cost, Inventory, Place, Segment
+from assess.model import CatalogueType, Inventory, Passage, Place, Segment
 from assess.motion.site_ground import GroundField
 from assess.progress import SILENT, Progress, Stage
 from assess.workbook import check, check_routes, draft_names
@@ -25,6 +25,7 @@ from assess.workbook.picture_files import PictureReader
 from assess.workbook.records import FileReader, Files, fill_building, replace_ground
 from assess.workbook.resolve import (
     build_building,
+    build_costs,
     build_floors,
     build_items,
     build_rows,
@@ -119,13 +120,14 @@ def _make(
         data=data,
         problems=tuple(problems),
         corrections=tuple(one for table in tables.values() for one in table.corrections),
-        building=build_building(tables["Building"], pictures.logo),
+        building=build_building(tables, pictures.logo),
         floors=build_floors(tables["Floors"], files.records, pictures.plans),
         items=build_items(tables["Items"], types_by_name(tables["Catalogue"])),
         places=build_rows(Place, tables["Places"], "place", "floor"),
         routes=build_rows(Segment, tables["Routes"], "route", "segment"),
         catalogue=build_rows(CatalogueType, tables["Catalogue"], "type"),
-        costs=build_rows(Cost, tables["Costs"], "detail", "unit_cost"),
+        costs=build_costs(tables["Costs"]),
+        texts=build_rows(Passage, tables["Text"], "text"),
         hazard=files.hazard,
         site_ground=files.site_ground,
         photos=pictures.photos,
@@ -303,6 +305,7 @@ def _checks(files: FileReader, pictures: PictureReader) -> tuple[Check, ...]:
         files.check_ground,
         check.check_catalogue,
         check.check_costs,
+        partial(check.check_anchor_code, is_shaken=files.ground is not None),
         partial(check.check_floors, is_shaken=files.ground is not None),
         files.check_records,
         check.check_velocities,

@@ -4,7 +4,7 @@
 the model.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -19,12 +19,13 @@ from assess.workbook.habits import note, shorten
 from assess.workbook.names import key
 from assess.workbook.parse import Row, Table, Tables, row_numbers
 from assess.workbook.schema import PICTURE_FIELDS
+from assess.workbook.values import find_currency
 
 _ITEM_FIELDS = frozenset(field.name for field in fields(Item))
 SIZES = ("breadth", "width", "height")
 FROM_TYPE = (*SIZES, "weight", "centre_of_gravity")
 """Fields of an item that its type of the catalogue gives where they are blank."""
-T = TypeVar("T", CatalogueType, model.Cost, model.Place, model.Segment)
+T = TypeVar("T", CatalogueType, model.Passage, model.Place, model.Segment)
 
 
 def defined(table: Table, name: str = "") -> dict[str, str]:
@@ -90,16 +91,35 @@ def _change(table: Table, changes: Mapping[int, Mapping[str, Any]]) -> Table:
     return replace(table, rows=tuple(rows)) if changes else table
 
 
-def build_building(table: Table, logo: Path | None) -> model.Building:
-    """Return the building; `logo` is the picture that its line names."""
+def build_building(tables: Tables, logo: Path | None) -> model.Building:
+    """Return the building; `logo` is the picture that its line names. Blank units of reports are those of the sizes."""
+    table, units = tables["Building"], {tables["Items"].units.get(name) for name in SIZES} - {None}
     values = table.rows[0].values if table.rows else {}
     cells = {name: table.cell(name, 0) for name in table.places}
-    return model.Building(**{**values, "logo": logo}, cells=cells)
+    chosen = values.get("report_units")
+    if chosen in (None, model.UNITS[0]):
+        chosen = "US" if units and units <= {"in", "ft"} else "SI"
+    return model.Building(**{**values, "logo": logo, "report_units": chosen}, cells=cells)
 
 
 def build_rows(kind: type[T], table: Table, *needed: str) -> tuple[T, ...]:
     """Return the rows of a table that have the fields they need as rows of the model: places, segments or types."""
     return tuple(kind(row=row.number, **row.values) for row in table.with_all(*needed))
+
+
+def build_costs(table: Table) -> tuple[model.Cost, ...]:
+    """Return the costs of details, in the one currency that the sheet names."""
+    rows = table.with_all("detail", "unit_cost")
+    currency = next((code for row in rows for code in name_currencies(row)), "")
+    return tuple(model.Cost(row=row.number, **{**row.values, "currency": currency}) for row in rows)
+
+
+def name_currencies(row: Row) -> Iterator[str]:
+    """Yield the ISO codes of the currencies that a row of Costs names: in its Unit cost, and in Currency."""
+    if getattr(row.get("unit_cost"), "currency", ""):
+        yield row.get("unit_cost").currency
+    if row.get("currency"):
+        yield find_currency(row.get("currency"))
 
 
 def types_by_name(catalogue: Table) -> dict[str, CatalogueType]:

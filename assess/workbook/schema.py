@@ -10,8 +10,8 @@ from typing import Any, Literal
 
 from assess.details import DETAILS, FIX_BY
 from assess.intensity import SHAKINGS
-from assess.model import ANCHORED, AXES, IMPORTANCE, SIZES_FROM, STRUCTURES
-from assess.settings import CLASS_BY, SCENARIOS
+from assess.model import ANCHORED, AXES, COST_PER, IMPORTANCE, LEVELS, SIZES_FROM, STRUCTURES, TEXT_SECTIONS, UNITS
+from assess.settings import ANCHOR_CODES, CLASS_BY, SCENARIOS
 from assess.units import QUANTITIES
 
 Kind = Literal["text", "number", "count", "choice", "flag", "language", "date", "file", "records", "outline"]
@@ -22,6 +22,8 @@ PLACES = ("room", "corridor", "door", "stair", "exit")
 LANGUAGES = ("English", "Italiano")
 """Of reports: names that `assess.i18n.find_language` knows."""
 YES, NO = "yes", "no"
+CURRENCIES = {"€": "EUR", "$": "USD", "£": "GBP", "¥": "JPY", "Fr": "CHF", "SFr": "CHF", "NZ$": "NZD"}
+"""ISO codes of currencies by their signs; the codes are offered, any other ISO code may be typed."""
 
 DEFAULT_WIDTH = 0.9
 """Default required width of a route [m]: 900 mm, as Italy's D.M. 3 August 2015 asks for up to 300 occupants."""
@@ -181,6 +183,22 @@ BUILDING = Sheet(
                choices=CLASS_BY, default=CLASS_BY[0]),
         Column("language", "Report language", "language", "Language of the report.", choices=LANGUAGES,
                default="the workbook's"),
+        Column("report_units", "Report units", "choice", "Units of the reports. SI: cm, m, kN, kg, cm/s. US: in, ft, lb, "
+               "in/s. Files for other programs keep theirs.", choices=UNITS, default=UNITS[0]),
+        Column("anchor_code", "Code of anchors", "choice", "Code of the force on anchors, from SDS or Ground PGA, else ShakeMap "
+               "or Shaking. NTC 2018: F_a of 7.2.3, with S_a and q_a of EN 1998-1.", choices=ANCHOR_CODES,
+               default="by Scenario kind, else ASCE 7-22"),
+        Column("licence", "Licence", "text", "Professional licence or registration of who answers for the report."),
+        Column("project_number", "Project number", "text", "Number of the project or contract."),
+        Column("survey_date", "Survey date", "date", "When the furniture was surveyed."),
+        Column("surveyed_by", "Surveyed by", "text", "Who surveyed it."),
+        Column("extent", "Extent", "text", "What the survey covers: floors, wings, kinds of furniture."),
+        Column("rooms_not_entered", "Rooms not entered", "text", "Rooms that were not seen, and why."),
+        Column("investigation_level", "Level of investigation", "choice", "After the levels of ASTM E2026, in our words. "
+               "0: from documents, without a visit. 1: a visit. 2: a visit, with drawings reviewed and simple calculations. "
+               "3: detailed investigation and analysis.", choices=LEVELS),
+        Column("documents", "Documents reviewed", "text", "Drawings, reports and lists that were reviewed."),
+        Column("purpose", "Purpose and reliance", "text", "What the report is for, and who may rely on it."),
     ),
 )  # fmt: skip
 
@@ -345,13 +363,27 @@ COSTS = Sheet(
     (
         Column("detail", "Detail", "text", "How a piece is fixed: choose from the list.", required=True,
                offered=tuple(str(one.title) for one in DETAILS.values()), width=34),
-        Column("unit_cost", "Unit cost", "number", "Of fixing one piece, in any one currency.", low=0, high=900_000,
+        Column("unit_cost", "Unit cost", "number", "Of fixing one piece, or of one fixing: see Per.", low=0, high=900_000,
                default="none: the schedule shows no cost", width=12),
+        Column("currency", "Currency", "text", "ISO code or sign, such as EUR: the same in every row.",
+               offered=tuple(dict.fromkeys(CURRENCIES.values())), default="the currency is not shown", width=10),
+        Column("per", "Per", "choice", "What Unit cost is of: a piece, or each of its fixings.", choices=COST_PER,
+               default=COST_PER[0], width=10),
         Column("source", "Source", "text", "Where the cost comes from: an offer, a price list.", width=60),
     ),
 )  # fmt: skip
 
-SHEETS = (BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, CATALOGUE, COSTS)
+TEXTS = Sheet(
+    "Text", "table", False,
+    "Findings and judgement in your own words, for the report: one paragraph a row, shown in this order.",
+    (
+        Column("section", "Section", "choice", "Part of the report in which the paragraph stands.", choices=TEXT_SECTIONS,
+               default=TEXT_SECTIONS[0], width=18),
+        Column("text", "Text", "text", "The paragraph, as plain text.", required=True, width=110),
+    ),
+)  # fmt: skip
+
+SHEETS = (BUILDING, FLOORS, ITEMS, PLACES_SHEET, ROUTES, CATALOGUE, COSTS, TEXTS)
 
 PICTURE_FIELDS = frozenset({"photo", "plan", "plan_left", "plan_bottom", "plan_width", "plan_turn"})
 """Fields of tables that only reports and plans show: a row in which they are wrong is assessed without them."""

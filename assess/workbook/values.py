@@ -20,7 +20,7 @@ from assess.units import GRAVITY, QUANTITIES, ROUNDING, read_unit
 from assess.workbook.habits import SHOWN, CellError, Remark, clean, note, shorten
 from assess.workbook.names import DASHES, ENGLISH, find_choice, find_near, plain, translate_choices
 from assess.workbook.open import UNSAVED, Percent
-from assess.workbook.schema import NO, YES, Column
+from assess.workbook.schema import CURRENCIES, NO, YES, Column
 
 CellReader = Callable[[object], tuple[object, tuple[Remark, ...]]]
 """Returns a cell's value in SI, and what is remarkable about it; raises CellError."""
@@ -102,6 +102,8 @@ def _read_number(column: Column, value: object, unit: str) -> float:
         typed = fill("{number:g}{unit}", number=number, unit=f" {unit}" if unit else "")
         message = fill("{label} is {typed}, expected {expected}.", label=column.label, typed=typed, expected=expected)
         raise CellError(message, find_slip(column, number, unit))
+    if isinstance(value, Money):
+        return value
     return number * QUANTITIES[column.quantity][unit] if column.quantity else number
 
 
@@ -299,8 +301,8 @@ def straighten(text: str) -> str:
 
 
 def is_free(column: Column) -> bool:
-    """Tell whether a column takes any text as it is."""
-    return column.kind == "text" and not (column.required or column.source)
+    """Tell whether a column takes any text as it is: one that other cells compare with does not."""
+    return column.kind == "text" and (column.name == "text" or not (column.required or column.source))
 
 
 def understand(column: Column, value: object, unit: str) -> tuple[object, Remark | None]:
@@ -406,6 +408,42 @@ def list_readings(column: Column, number: float, unit: str) -> list[tuple[str, f
 # ---------------------------------------------------------------- numbers
 
 
+class Money(float):
+    """An amount that names its currency, by its ISO code, in the same cell."""
+
+    currency: str
+
+
+_MONEY = re.compile(r"(\D*?) ?(-?[\d.,](?:[\d.,' ]*\d)?)(?:[.,]-?)? ?(\D*)", re.ASCII)
+
+
+def find_currency(text: str) -> str:
+    """Return the ISO code of a currency by its code or sign, "" for what is neither."""
+    from babel.numbers import is_currency
+
+    sign, code = text.strip().rstrip("."), text.strip().upper()
+    return CURRENCIES.get(sign) or (code if is_currency(code) else "")
+
+
+def _take_money(column: Column, value: str) -> tuple[object, Remark | None] | None:
+    """Return an amount with its currency, such as € 85,00; None for a text that has another form."""
+    match = _MONEY.fullmatch(straighten(value).removeprefix("'").strip())
+    named = [one for one in (match[1], match[3]) if one] if match else []
+    if match is None or not named:
+        return None
+    codes = [find_currency(one) for one in named]
+    if len(codes) > 1 and all(codes):
+        fault = fill("{label} is {text}: it names a currency twice.", label=column.label, text=shorten(value))
+        raise CellError(fault, fill("Write the currency once."))
+    amount, _ = _take_number(column, match[2], "")
+    if len(codes) > 1 or not codes[0] or not isinstance(amount, int | float):
+        return None
+    money = Money(amount)
+    money.currency = codes[0]
+    shown = fill("{number:.12g} {currency}", number=amount, currency=codes[0])
+    return money, replace(note("unit", _name_column(column), shorten(value), shown, amount), value=None)
+
+
 def _take_number(column: Column, value: object, unit: str) -> tuple[object, Remark | None]:
     if isinstance(value, Percent) and column.quantity == "share" and is_within(column, 100 * value, unit):
         shown = fill("{number:g}{unit}", number=100 * value, unit=f" {unit}")
@@ -413,6 +451,8 @@ def _take_number(column: Column, value: object, unit: str) -> tuple[object, Rema
         return 100 * value, replace(found, value=None)
     if not isinstance(value, str) or len(value) > LONGEST:
         return value, None
+    if column.name == "unit_cost" and (money := _take_money(column, value)) is not None:
+        return money
     if (length := _read_parts(column, value, unit)) is not None:
         typed = fill("{number:g}{unit}", number=length, unit=f" {unit}")
         return length, note("unit", _name_column(column, unit), shorten(value), typed, length)

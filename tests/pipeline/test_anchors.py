@@ -3,6 +3,7 @@
 import pytest
 
 import assess
+from assess.intensity import SHAKINGS
 from assess.pipeline.anchors import find_weight
 from assess.settings import Settings
 from tests.pipeline.rows import assessed
@@ -64,6 +65,35 @@ def test_the_force_that_the_code_asks_for(building, elevation, share, up):
     tension = max(0, 1.2 * (share * 0.9 - (1 - up) * 0.2) / 1.7)
     assert found.tension_code_kn == pytest.approx(tension, abs=6e-5)
     assert found.shear_code_kn == pytest.approx(1.2 * share - tension, abs=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("building", "code", "share"),
+    [
+        ({"ground_pga": 0.4, "anchor_code": "EN 1998-1"}, "EN 1998-1", 2.5 * 0.4 / 2),
+        ({"sds": 1.0, "anchor_code": "EN 1998-1"}, "EN 1998-1", 2.5 * 0.4 / 2),
+        ({"sds": 1.0, "ground_pga": 0.3, "anchor_code": "NTC 2018"}, "NTC 2018", 2.5 * 0.3 / 2),
+        ({"ground_pga": 0.4, "scenario_kind": "EN 1998-1"}, "EN 1998-1", 2.5 * 0.4 / 2),
+        ({"ground_pga": 0.4, "scenario_kind": "NTC 2018"}, "NTC 2018", 2.5 * 0.4 / 2),
+        ({"ground_pga": 0.4, "scenario_kind": "NTC 2018", "anchor_code": "ASCE 7-22"}, "ASCE 7-22", 0.6154),
+        ({"shaking": "MMI VIII, severe"}, "", None),
+        ({}, "", None),
+    ],
+)
+def test_the_code_of_anchors_is_chosen_or_follows_the_scenario(building, code, share):
+    results = assess_one({"period": 0.8, "height": 20, "scenario_kind": "given"} | building, {"elevation": 20})
+    found = anchor_of(results)
+    assert results.provenance.anchor_code == code
+    if share is None:
+        assert found.tension_code_kn is None
+    else:
+        assert found.shear_code_kn + found.tension_code_kn == pytest.approx(1.2 * share, abs=1e-4)
+
+
+def test_an_intensity_serves_a_code_that_is_chosen():
+    results = assess_one({"shaking": "MMI VIII, severe", "anchor_code": "EN 1998-1", "height": 20}, {"elevation": 0})
+    found, pga = anchor_of(results), SHAKINGS["MMI VIII, severe"].pga / 9.80665
+    assert found.shear_code_kn + found.tension_code_kn == pytest.approx(1.2 * pga / 2, abs=1e-4)
 
 
 def test_the_factor_on_the_motion_leaves_the_code_alone():

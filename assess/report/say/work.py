@@ -215,9 +215,26 @@ def say_force(force: float | None) -> str:
     return words.fixed(force, 2)
 
 
-def say_cost(cost: float | None) -> str:
-    """Return a cost, in the workbook's currency."""
-    return words.DASH if cost is None else number(cost, ",.0f" if cost == round(cost) else ",.2f")
+def say_cost(cost: float | None, currency: str = "") -> str:
+    """Return a cost with the ISO code of its currency, as far as the workbook names one: ``1,530 EUR``."""
+    if cost is None:
+        return words.DASH
+    amount = number(cost, ",.0f" if cost == round(cost) else ",.2f")
+    return f"{amount}{words.NO_BREAK}{currency}" if currency else amount
+
+
+def say_code(results: Results) -> str:
+    """Return which force a code asks of anchors, and what was assumed for it; "" where no code applies."""
+    chosen = results.settings
+    named = {"q": chosen.anchor_behaviour, "gamma": chosen.anchor_importance, "period": chosen.anchor_period}
+    texts = {
+        "ASCE 7-22": _("F_p of ASCE 7-22, 13.3.1"),
+        "EN 1998-1": _("F_a of EN 1998-1, 4.3.5.2, with q_a {q:g}, γ_a {gamma:g} and T_a {period:g} s (assumed; not "
+                       "checked against the code's own text)", **named),
+        "NTC 2018": _("F_a of NTC 2018, 7.2.3, with S_a and q_a of EN 1998-1, 4.3.5.2: q_a {q:g} and T_a {period:g} s "
+                      "(assumed; EN 1998-1 not checked against its own text)", **named),
+    }  # fmt: skip
+    return texts.get(results.provenance.anchor_code, "")
 
 
 SCREENING = fill("screening, not design")
@@ -248,7 +265,7 @@ def say_effect_of_all(schedule: Schedule) -> list[str]:
     if schedule.cost is None:
         costs = _("No cost is given: unit costs are read from the sheet {sheet} of the workbook.", sheet=_("Costs"))
         return [effect, costs]
-    costs = _("The costs that the workbook gives sum to {cost}.", cost=say_cost(schedule.cost))
+    costs = _("The costs that the workbook gives sum to {cost}.", cost=say_cost(schedule.cost, schedule.currency))
     if schedule.uncosted:
         costs += " " + ngettext("{n:,} entry has a part without a cost.", "{n:,} entries have a part without a cost.",
                                 schedule.uncosted)  # fmt: skip

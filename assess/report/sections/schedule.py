@@ -68,7 +68,7 @@ def _list_work(view: View) -> Iterator[blocks.Block]:
     has_code, has_cost = any(one.row.tension_code_kn is not None for one in works), schedule.cost is not None
     forces = _("Forces are those of each piece: the tension that its fixings carry together, at the bracket or, for a "
                "base angle, at the base, and the shear at its base at PFA.")  # fmt: skip
-    code = blocks.lower_indices(_("By code: F_p of ASCE 7-22.")) if has_code else ""
+    code = blocks.lower_indices(_("By code: {force}.", force=say.say_code(view.run))) if has_code else ""
     yield blocks.Paragraph(blocks.join_words((f"{_(say.ORDER)} {forces}", code)), "lead-in")
     fields = schedule_fields(WorkRow)
     columns = [
@@ -105,7 +105,7 @@ def _list_work(view: View) -> Iterator[blocks.Block]:
                 *([say.say_force(row.tension_code_kn)] if has_code else []),
                 say.say_force(row.shear_kn),
                 f"{say.say_fixings(row)} × {number(row.pieces, ',d')}",
-                *([say.say_cost(row.unit_cost), say.say_cost(row.cost)] if has_cost else []),
+                *([say.say_cost(each, schedule.currency) for each in (row.unit_cost, row.cost)] if has_cost else []),
                 words.fixed(entry.falls_avoided, 2) if one.is_first else words.DASH,
                 words.fixed(entry.falls_left, 2) if one.is_first else words.DASH,
             ]))  # fmt: skip

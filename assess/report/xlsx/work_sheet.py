@@ -49,7 +49,8 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
             style = pen.style("text", column.format, bottom=4, align=column.align)
             if column.key == "cost":
                 pieces, unit = (xl_rowcol_to_cell(row, at[name]) for name in ("pieces", "unit_cost"))
-                formula = f'=IF({unit}="","",{pieces}*{unit})'
+                each = f"*{work.row.fixings}" if work.row.cost_per == "fixing" else ""
+                formula = f'=IF({unit}="","",{pieces}*{unit}{each})'
                 page.write_formula(row, place, formula, style, "" if value is None else value)
             else:
                 pen.put(page, row, place, value, style)
