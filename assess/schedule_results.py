@@ -138,8 +138,8 @@ class PhaseRow:
 class Schedule:
     """What to fix, the most urgent first, and what is to be expected before and after phases A and B.
 
-    `checks` are of pieces that are anchored, or that roll: to look at, or to park; `phases` are those of `rows`; `currency` is an
-    ISO code, "" where the workbook names none.
+    `checks` are of pieces that are anchored, or that roll: to look at, or to park; `phases` are those of `rows`;
+    `currency` is an ISO code, "" where the workbook names none.
     """
 
     rows: tuple[ScheduleRow, ...]

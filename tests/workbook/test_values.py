@@ -102,7 +102,7 @@ WRONG: dict[str, list[tuple[str, Any, str]]] = {
     "Costs": [
         ("Unit cost", -4, "Unit cost is -4, expected 0 to 900000."),
         ("Unit cost", 1e7, "Unit cost is 1e+07, expected 0 to 900000."),
-        ("Unit cost", "40 €", "Unit cost is the text '40 €', expected a number."),
+        ("Unit cost", "40 apples", "Unit cost is the text '40 apples', expected a number."),
     ],
 }  # fmt: skip
 """By sheet: a header, a value below it, and how its error begins; more of them stand in test_check."""
