@@ -65,7 +65,7 @@ class Format:
     key: str
     file: str
     is_default: bool = True
-    edition: Literal["client", "annex"] | None = None
+    edition: Literal["client", "annex", "work"] | None = None
     needs: Mapping[str, str] = field(default_factory=dict)
     extra: str = ""
 
@@ -115,6 +115,7 @@ FORMATS: Mapping[str, Format] = {
     one.key: one for one in (
         Format(key="pdf", file="report.pdf", edition="client"),
         Format(key="annex", file="annex.pdf", edition="annex", is_default=False),
+        Format(key="work", file="work.pdf", edition="work", is_default=False),
         Format(key="xlsx", file="report.xlsx"),
         Format(key="html", file="report.html"),
         Format(key="json", file="results.json"),

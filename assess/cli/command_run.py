@@ -91,8 +91,9 @@ def command(
     formats: Annotated[
         str,
         typer.Option(
-            help="Files to write, comma-separated: pdf is the report for the client; also annex, its details, docx, "
-            "the report in Word, npz, the result of every motion, parquet, the items typed; or all.",
+            help="Files to write, comma-separated: pdf is the report for the client; also annex, its details, work, "
+            "work orders by room and stickers, docx, the report in Word, npz, the result of every motion, parquet, the "
+            "items typed; or all.",
             autocompletion=options.list_of((*FILES, ALL)),
         ),
     ] = ",".join(DEFAULT),
@@ -152,7 +153,7 @@ def command(
         own, figures = _read_methods(methods or (), motions, progress), not set(wanted) <= PLAIN
         results = run(inventory, settings, **own, jobs=jobs, figures=figures, progress=progress)
         print_warnings(results.problem_rows)
-        if {"pdf", "annex"} & set(wanted):
+        if {"pdf", "annex", "work"} & set(wanted):
             from assess.report.pages.pdf import list_problems
 
             print_warnings(list_problems(results))

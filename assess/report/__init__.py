@@ -44,18 +44,19 @@ def write_reports(
     * `results`: from `assess.run`.
     * `folder`: where to; made where it is missing. Reports of an earlier run in it, of any format, are replaced
       or removed; other files are left alone.
-    * `formats`: of "pdf", "annex", "xlsx", "html", "json", "csv", "docx", "npz", "parquet"; by default all but "annex"
-      and the last three; or "all". results.json is always written.
+    * `formats`: of "pdf", "annex", "work", "xlsx", "html", "json", "csv", "docx", "npz", "parquet"; by default all but
+      "annex", "work" and the last three; or "all". results.json is always written.
     * `options`: language, templates and kind of PDF; by default in the workbook's language, with the standard
       templates.
     * `progress`: notified of how far the work is; once it is cancelled, nothing is written.
 
     Returns the file of each format; its `removed` are those of an earlier run that were not replaced.
 
-    Raises InputError if a format is unknown, a template of the firm's own cannot be used, or a file of the user's
-    stands at the name of a report; PdfUnavailableError if the native libraries of the PDFs are missing; all other
-    formats have been written; OutputError if a file cannot be written; what was there before is left as it was;
-    CancelledError if the work was cancelled; nothing was written.
+    Raises InputError if a format is unknown, a template of the firm's own cannot be used, a file of the user's stands
+    at the name of a report, or the QR code of a sticker would hold too much (WorkbookError, by cell);
+    PdfUnavailableError if the native libraries of the PDFs are missing; all other formats have been written;
+    OutputError if a file cannot be written; what was there before is left as it was; CancelledError if the work was
+    cancelled; nothing was written.
     """
     formats = list_formats((formats,) if isinstance(formats, str) else formats)
     unknown = [name for name in formats if name not in FILES]
@@ -65,6 +66,8 @@ def write_reports(
     folder, options = Path(folder), options or ReportOptions()
     options = options if options.language else replace(options, language=results.provenance.language)
     check_folder(folder, formats)
+    if "work" in formats:
+        _check_stickers(results, options)
     wanted = {*formats, "json"}
     ordered = [name for name in FILES if name in wanted - set(_LAST)] + [name for name in _LAST if name in wanted]
     try:
@@ -78,6 +81,16 @@ def write_reports(
         raise missing
     files = {name: folder / file for name, file in FILES.items() if file in {*job.listed, DATA}}
     return Written(files, removed=[folder / name for name in gone])
+
+
+def _check_stickers(results: Results, options: ReportOptions) -> None:
+    from assess.report.content import Content
+    from assess.report.figures.codes import check_codes
+    from assess.report.say.orders import list_orders, list_stickers
+
+    with options.spoken():
+        content = Content(results)
+        check_codes(list_stickers(list_orders(content), content.title), content.run)
 
 
 def list_formats(formats: Sequence[str]) -> Sequence[str]:

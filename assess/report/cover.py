@@ -24,6 +24,7 @@ def build_document(view: View) -> Document:
         sections += [replace(first, id=part.key, heading=_(part.heading)), *others]
     named = words.cut(content.title, 80)
     title = (_("Furniture in earthquakes: {building}, annex", building=named) if view.edition == "annex"
+             else _("Furniture in earthquakes: {building}, work orders", building=named) if view.edition == "work"
              else _("Furniture in earthquakes: {building}", building=named))  # fmt: skip
     return Document(
         title=title, cover=_build_cover(view), sections=sections,
@@ -46,6 +47,10 @@ def _build_cover(view: View) -> list[Block]:
                  "same date: {date}.", date=content.date)  # fmt: skip
         kind = Paragraph(_("Overturning of furniture in an earthquake: annex to the assessment"), "kind")
         return [kind, Title(title, short, footer, conditions), Paragraph(text), build_contents(view)]
+    if view.edition == "work":
+        short = _("{building}, work orders", building=words.cut(content.title, 50))
+        kind = Paragraph(_("Fixing furniture against earthquakes: work orders of {date}", date=content.date), "kind")
+        return [kind, Title(words.cut(content.title, 110), short, footer, conditions)]
     blocks: list[Block] = []
     if logo := embed_logo(view.run):
         named = (_("Logo of {organisation}", organisation=building.organisation) if building.organisation

@@ -21,8 +21,8 @@ from assess.report.say.route import list_segments
 from assess.results import ItemResult, Results
 from assess.route_results import SegmentRow
 
-Edition = Literal["client", "annex", "all"]
-"""What a manager acts on; what that rests on; both, the answer first, for a screen."""
+Edition = Literal["client", "annex", "work", "all"]
+"""What a manager acts on; what that rests on; what a caretaker does; the first two, for a screen."""
 FULL_ROWS = 150
 """Rows up to which a PDF shows whole tables of all pieces; longer ones go to the appendix in a compact form."""
 MOST_ROWS = 5000
@@ -96,7 +96,7 @@ class View:
     @cached_property
     def plans(self) -> Mapping[str, Plan | None]:
         """The plans by floor, None of one without a position; none in an edition that has no floors."""
-        if not self.shows("floors"):
+        if not self.shows("floors") and not self.shows("work"):
             return {}
         stretches, plans = build_stretches(self.run.route_tables), dict[str, Plan | None]()
         for page in self.progress.checked(self.content.shown_floors):

@@ -62,7 +62,7 @@ PARTS: Mapping[str, tuple[float, float]] = {
 }  # fmt: skip
 """How much of the way to the results is done at their beginnings and ends [-]."""
 SIMULATING, BY_FORMULA, FASTEST = 15.0, 3.0, 0.3
-WEIGHTS: Mapping[str, float] = {"html": 6.0, "pdf": 6.5, "annex": 16.5, "docx": 3.0, "xlsx": 0.5}
+WEIGHTS: Mapping[str, float] = {"html": 6.0, "pdf": 6.5, "annex": 16.5, "work": 5.0, "docx": 3.0, "xlsx": 0.5}
 """Times that results, and the file of each format, took of the worked example [s]: how they are to each other."""
 BUSY = fill("Other simulations are running. Try again in some minutes.")
 """Why there is no place for another."""

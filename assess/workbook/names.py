@@ -15,7 +15,7 @@ from itertools import chain
 from assess.i18n import LANGUAGES, gettext, load_catalogue
 from assess.settings import match_choice
 from assess.units import QUANTITIES, read_unit
-from assess.workbook.schema import HELP, LISTS, LIVE, SHEETS, WORKINGS, Column, Sheet
+from assess.workbook.schema import HELP, LISTS, LIVE, SHEETS, WALK_DOWN, WORKINGS, Column, Sheet
 
 ENGLISH, *_OTHERS = LANGUAGES
 DASHES = dict.fromkeys(map(ord, "\u2010\u2011\u2012\u2013\u2014\u2015\u2212\ufe58\ufe63\uff0d"), "-")
@@ -134,7 +134,7 @@ def find_near_column(sheet: Sheet, own: Sheet, header: str, labels: Collection[s
 def find_sheet(name: str) -> tuple[str, str] | None:
     """Return the English name and the language of the sheet that a name stands for, None for a sheet of one's own."""
     wanted = plain(name)
-    if wanted in (plain(HELP), plain(LISTS)):
+    if wanted in map(plain, (HELP, LISTS, WALK_DOWN)):
         return None
     return next(((names[wanted], code) for code in LANGUAGES if wanted in (names := _sheet_names(code))), None)
 

@@ -391,8 +391,8 @@ PICTURE_FIELDS = frozenset({"photo", "plan", "plan_left", "plan_bottom", "plan_w
 SHAKEN = ("ground_pga", "ground_pgv", "sds", "shakemap", "shaking")
 """Fields of Building that tell how the ground shakes; any one will do."""
 
-HELP, LISTS = "Help", "Lists"
-"""Sheets of the empty workbook that hold no data; reading leaves them out."""
+HELP, LISTS, WALK_DOWN = "Help", "Lists", "Walk-down"
+"""Sheets of the empty workbook that hold no data, the last a form to be printed; reading leaves them out."""
 
 CLASS, CLASS_OR = "Class (formula)", "Class (OR)"
 """By the formula that the sheet Building chooses, and by the paper's."""

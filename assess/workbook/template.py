@@ -24,6 +24,7 @@ from assess.workbook.lists import FROZEN, LETTERS, PLACES, ROW, ROWS, ListsWrite
 from assess.workbook.live_row import list_live
 from assess.workbook.names import translate_header
 from assess.workbook.schema import CATALOGUE, CLASS, CLASS_OR, HELP, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, Column
+from assess.workbook.walk_down import write_walk_down
 from assess.workbook.writer import write_book
 
 __all__ = ["ROWS", "Content", "Rows", "Units", "describe", "write_workbook"]
@@ -114,7 +115,7 @@ def write_workbook(
     * `content`: What to fill in; an empty workbook still has the catalogue.
     * `units` ("si" or "imperial"): Of the headers.
     * `spare`: Rows of each sheet that are prepared beyond those filled in, for many small workbooks; None prepares
-      `ROWS`.
+      `ROWS`, and the form for a walk-down.
     """
     filled = content or Content()
 
@@ -128,7 +129,7 @@ def write_workbook(
 
 class _Writer:
     def __init__(self, book: Any, content: Content, units: Units, spare: int | None) -> None:
-        self.book, self.content, self.units = book, content, units
+        self.book, self.content, self.units, self.has_form = book, content, units, spare is None
         self.head = book.add_format({"bold": True, "bg_color": "#1f3a4d", "font_color": "#ffffff", "text_wrap": True,
                                      "valign": "top", "border": 1})  # fmt: skip
         self.live_head = book.add_format({"bold": True, "bg_color": "#5b6b76", "font_color": "#ffffff",
@@ -184,6 +185,8 @@ class _Writer:
             page.repeat_rows(0)
             self._set_up_print(page)
         self._write_live(pages["Items"])
+        if self.has_form:
+            write_walk_down(self.book, self.units, [row["type"] for row in self.rows[CATALOGUE.name]])
         pages["Items"].activate() if self.content.rows else help_sheet.activate()
 
     def _set_up_print(self, page: Any) -> None:

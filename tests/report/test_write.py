@@ -50,7 +50,7 @@ def _run(path, out, *more, limit=None, patch=""):
 
 
 def test_an_unknown_format_and_a_folder_that_is_a_file_are_refused(tmp_path):
-    with pytest.raises(assess.InputError, match="formats: 'odt' is unknown, expected some of: pdf, annex, xlsx"):
+    with pytest.raises(assess.InputError, match="formats: 'odt' is unknown, expected some of: pdf, annex, work, xlsx"):
         assess.write_reports(assessed(tmp_path / "w.xlsx"), tmp_path / "out", ("odt",))
     assert not (tmp_path / "out").exists()
     (tmp_path / "out").write_text("x")

@@ -58,7 +58,7 @@ def test_it_lacks_nothing_but_rows_of_which_two_suffice(path: Path, tmp_path: Pa
 
 
 def test_tables_can_be_scrolled_sorted_and_printed(book: Any) -> None:
-    assert book.sheetnames == ["Help", *NAMES, "Lists"]
+    assert book.sheetnames == ["Help", *NAMES, "Lists", "Walk-down"]
     for sheet in TABLES:
         page = book[sheet.name]
         assert page.freeze_panes == ("C2" if sheet is ITEMS else "B2")

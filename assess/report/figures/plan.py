@@ -5,7 +5,7 @@ letters would be smaller than some programs can draw.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from assess.i18n import gettext as _
@@ -29,6 +29,8 @@ LARGEST = 90.0
 """Scale [px/m] that is not gone beyond for a few pieces close together."""
 BORDER = 0.4
 """Free space round everything that is drawn [m]."""
+AROUND, SMALLEST, CROPPED = 0.8, 6.0, 300.0
+"""Free space round a room, and its least width and depth [m]; the height of its drawing [px] at most."""
 SHORT = 12
 """Characters of a piece's name that are drawn."""
 _STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
@@ -66,7 +68,7 @@ class Plan:
     The ids of the drawing begin with `key`, as those of no other plan. `ways` are segments, those with most to warn of
     first, and `names` their names; `keys` are names that are not drawn, with the numbers in their place. Falls are
     drawn as far as `cut_at`: the outlines of the floor, the frame of the user's drawing, or "". `north` is its
-    direction [deg], anticlockwise from X, where it is known.
+    direction [deg], anticlockwise from X, where it is known. `is_crop`: it is that of a room (`crop_plan`).
     """
 
     key: str
@@ -85,6 +87,7 @@ class Plan:
     high: Point
     unit: float
     north: float | None
+    is_crop: bool = False
 
     @property
     def size(self) -> tuple[int, int]:
@@ -192,6 +195,40 @@ def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) 
         rooms=rooms, room_names=tuple(room_names), keys=tuple(names.keys), underlay=underlay,
         cut_at=edge[1] if edge else "", low=frame[:2], high=frame[2:], unit=unit,
         north=results.building.azimuth_deg,  # X lies as far clockwise from north as north anticlockwise from X
+    )  # fmt: skip
+
+
+def crop_plan(plan: Plan, results: Results, room: str, numbers: Mapping[int, str], key: str) -> Plan | None:
+    """Return the part of a plan that holds a room, for work orders; None where no piece of it has a position.
+
+    `numbers` are those of the lines by the numbers of their pieces (`Piece.number`); all other pieces are grey. Falls,
+    routes and names are left out, and so is a picture under the plan, which would be in the file once for each room.
+    """
+    rows = results.item_rows
+    floor = {rows[number - 1].floor for number in numbers}
+    own = {one.index + 1 for one in rows if one.room == room and one.floor in floor}
+    outlines = [one.outline for one in plan.rooms if one.name == room]
+    there = [one.corners for one in plan.pieces if one.number in (own if room else numbers)]
+    if not any(one.number in numbers for one in plan.pieces):
+        return None
+    box = bounds([point for ring in (*there, *outlines) for point in ring])
+    x, y = (max(AROUND, (SMALLEST - (box[at + 2] - box[at])) / 2) for at in (0, 1))
+    low, high = (box[0] - x, box[1] - y), (box[2] + x, box[3] + y)
+
+    def is_inside(corners: Sequence[Point]) -> bool:
+        return all(low[0] <= x <= high[0] and low[1] <= y <= high[1] for x, y in corners)
+
+    pieces = tuple(
+        replace(one, symbol=numbers[one.number], marks="", fallen=()) if one.number in numbers
+        else replace(one, symbol="", marks="", fallen=(), fill=ANCHORED, ink=words.INK)
+        for one in plan.pieces if is_inside(one.corners)
+    )  # fmt: skip
+    unit = max((high[0] - low[0]) / (WIDE - BESIDE), (high[1] - low[1]) / CROPPED, 1 / LARGEST)
+    under = plan.underlay if plan.underlay and not plan.underlay.image else None
+    return replace(
+        plan, key=key, title=f"{plan.title}: {words.cut(room, 60)}" if room else plan.title, pieces=pieces, places=(),
+        labels=(), ways=(), names=(), room_names=(), keys=(), cut_at="", is_crop=True, low=low, high=high, unit=unit,
+        rooms=tuple(one for one in plan.rooms if is_inside(one.outline)), underlay=under,
     )  # fmt: skip
 
 

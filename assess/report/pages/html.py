@@ -87,7 +87,8 @@ def render(
     view = View(content=content, edition=edition, for_print=for_print, options=options, progress=progress)
     document = progress.wait_for(lambda: build_document(view))
     if for_print:
-        return render_document(document, options, "edition.css", for_print=True, progress=progress)
+        styles = ("edition.css", *(("work.css",) if edition == "work" else ()))
+        return render_document(document, options, *styles, for_print=True, progress=progress)
     total = content.total
     filters = [(class_name(risk), risk_label(risk)) for risk in RiskClass]
     filters += [("apart-unconfirmed", apart_label("unconfirmed"))] if total.unconfirmed else []

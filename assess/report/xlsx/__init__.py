@@ -19,7 +19,15 @@ from assess.report.content import Content, report_date
 from assess.report.say.ground import name_source
 from assess.report.say.route import list_unfixable
 from assess.report.say.simulation import say_scenario
-from assess.report.xlsx import floors_sheet, items_sheet, list_sheets, route_sheets, summary_sheet, work_sheet
+from assess.report.xlsx import (
+    floors_sheet,
+    form_sheets,
+    items_sheet,
+    list_sheets,
+    route_sheets,
+    summary_sheet,
+    work_sheet,
+)
 from assess.report.xlsx.pen import Pen, write_sheets
 
 SHEETS: tuple[tuple[str, Callable[[Pen, Any, Content], None], Callable[[Content], bool] | None], ...] = (
@@ -33,6 +41,8 @@ SHEETS: tuple[tuple[str, Callable[[Pen, Any, Content], None], Callable[[Content]
     (fill("Route pieces"), route_sheets.write_route_pieces, lambda content: bool(
         list_unfixable(content.run.route_tables) or any(one.pieces for one in content.run.route_tables.segments))),
     (fill("Route rooms"), route_sheets.write_route_rooms, lambda content: bool(content.run.route_tables.rooms)),
+    (fill("FEMA E-74"), form_sheets.write_e74, lambda content: bool(content.results)),
+    (fill("Tokyo 21 items"), form_sheets.write_tokyo, lambda content: bool(content.results)),
     (fill("Annual"), list_sheets.write_annual, lambda content: content.annual is not None),
     (fill("Methods"), list_sheets.write_methods, None),
     (fill("Assumptions"), list_sheets.write_assumptions, None),

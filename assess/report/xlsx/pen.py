@@ -156,7 +156,7 @@ class Pen:
         return self._rows(page, row + 2, columns, widths, rows)
 
     def _rows(self, page: Any, top: int, columns: Sequence[Column], widths: Sequence[int], rows: Sequence[Any]) -> int:
-        shown, text = [self.style("plain", one.format) for one in columns], self.style("text")
+        shown, text = [self.style("plain", one.format, align=one.align) for one in columns], self.style("text")
         for number, row in enumerate(rows, top):
             self.progress.check()
             values = [one.read(row) for one in columns]

@@ -90,7 +90,7 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
         worst[basis] = [(row, one) for _number, row, one in heapq.nlargest(10, known, key=itemgetter(0))]
     lines = list(_list_lines(pen, content, areas, bases))
     top = 2 + len(lines)
-    row = first = top + 3 + len(bases) + len(_list_apart()) + CHART_ROWS
+    row = first = top + 3 + len(bases) + len(_list_apart(content)) + CHART_ROWS
     lists, tables = {}, {}
     for basis, found in worst.items():
         lists[basis], row = row, row + 3 + len(found)
@@ -111,7 +111,7 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
         for at, value in enumerate(_count_as_run(results, basis), 1):
             formula = f"={xl_col_to_name(at)}{plan.total(basis) + 1}"
             page.write_formula(row, at, formula, pen.style("total"), value)
-    for at, (label, value) in enumerate(zip(_list_apart(), _count_apart(results), strict=True) if bases else (), 1):
+    for at, (label, value) in enumerate(_count_apart(content, results).items() if bases else (), 1):
         page.write_string(row + at, 0, label, pen.style("total"))
         formula = f"={xl_col_to_name(SUM + at)}{plan.total(bases[0]) + 1}"
         page.write_formula(row + at, SUM, formula, pen.style("total"), value)
@@ -256,9 +256,9 @@ def _draw(plan: _Plan, row: int, worst: Mapping[str, Found]) -> None:
         page.set_h_pagebreaks([*list(plan.lists.values())[1:2], *(tables if is_many else tables[:1]), first - 1])
 
 
-def _list_apart() -> list[str]:
-    """Return what is counted without a class: rows to be run again, pieces that roll, anchored pieces, and all."""
-    return [_("run again"), _(words.BASES[ROLLS]), _("anchored"), _("all")]
+def _list_apart(content: Content) -> list[str]:
+    """Return what is counted without a class: rows to be run again, anchored pieces, any that roll, and all pieces."""
+    return list(_count_apart(content, ()))
 
 
 def _count_as_run(results: Sequence[ItemResult], basis: str) -> list[int]:
@@ -267,11 +267,13 @@ def _count_as_run(results: Sequence[ItemResult], basis: str) -> list[int]:
     return [*counts, sum(counts)]
 
 
-def _count_apart(results: Sequence[ItemResult]) -> list[int]:
-    """Return the numbers of `_list_apart` as run."""
-    anchored = count_pieces(one for one in results if one.is_anchored)
-    rolls = count_pieces(one for one in results if one.apart == ROLLS and not one.is_anchored)
-    return [0, rolls, anchored, count_pieces(results)]
+def _count_apart(content: Content, results: Sequence[ItemResult]) -> dict[str, int]:
+    """Return the numbers of `_list_apart` of some rows, as run."""
+    loose = [one for one in results if not one.is_anchored]
+    found = {_("run again"): 0, _("anchored"): count_pieces(results) - count_pieces(loose)}
+    if content.total.rolls:
+        found[_(words.BASES[ROLLS])] = count_pieces(one for one in loose if one.apart == ROLLS)
+    return found | {_("all"): count_pieces(results)}
 
 
 def _write_floors(plan: _Plan, basis: str) -> None:
@@ -279,7 +281,7 @@ def _write_floors(plan: _Plan, basis: str) -> None:
     title = _("Pieces by class and floor: {basis}", basis=pen.terms.bases[basis])
     page.write_string(top, 0, title, pen.style("heading"))
     is_first = basis == plan.bases[0]
-    _write_heads(plan, top + 1, _("Floor"), [_("pieces"), *(_list_apart() if is_first else ())])
+    _write_heads(plan, top + 1, _("Floor"), [_("pieces"), *(_list_apart(content) if is_first else ())])
     areas, terms, quantity, letter = plan.areas, pen.terms, plan.areas["quantity"], xl_col_to_name(SUM)
     anchored = f"({areas['held']}={literal(terms.yes)})"
     again = f"({areas['basis']}={literal(terms.again)})"
@@ -300,16 +302,19 @@ def _write_floors(plan: _Plan, basis: str) -> None:
         formulas.append(f"=SUM(B{row + 1}:{xl_col_to_name(SUM - 1)}{row + 1})")
         values = _count_as_run(floor.results, basis)
         if is_first:  # what has no class on a floor, and all pieces
-            rolls = f"(1-{anchored})*({areas['basis']}={literal(terms.bases[ROLLS])})"
-            apart = [f"{on_floor}*{again}", f"{on_floor}*{rolls}", f"{on_floor}*(1-{again})*{anchored}"]
+            apart = [f"{on_floor}*{again}", f"{on_floor}*(1-{again})*{anchored}"]
+            if content.total.rolls:
+                apart.append(f"{on_floor}*(1-{anchored})*({areas['basis']}={literal(terms.bases[ROLLS])})")
             sums = [f"{letter}{plan.tables[one] + 2 + number}" for one in plan.bases]
             sums += [f"{xl_col_to_name(SUM + at)}{row + 1}" for at in range(1, 1 + len(apart))]
             formulas += [*(f"=SUMPRODUCT({one},{quantity})" for one in apart), f"={'+'.join(sums)}"]
-            values += _count_apart(floor.results)
+            values += _count_apart(content, floor.results).values()
         for at, (formula, count) in enumerate(zip(formulas, values, strict=True), 1):
             page.write_formula(row, at, formula, pen.style("live"), count)
     page.write_string(below, 0, _("All floors"), pen.style("total"))
-    values = _count_as_run(content.results, basis) + (_count_apart(content.results) if is_first else [])
+    values = _count_as_run(content.results, basis) + (
+        [*_count_apart(content, content.results).values()] if is_first else []
+    )
     for at, value in enumerate(values, 1):
         column = xl_col_to_name(at)
         page.write_formula(below, at, f"=SUM({column}{top + 3}:{column}{below})", pen.style("total"), value)

@@ -1,134 +1,157 @@
-"""The sheet Work list: what to fix, room by room, to be printed and ticked off, and what it changes.
+"""The sheet Work list: what to fix, floor by floor and room by room, to be printed and ticked off, and what it changes.
 
 All of it is as run, but for the costs: number of pieces times unit cost, so that another unit cost can be tried.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
-from assess.details import DETAILS
-from assess.fields import schedule_fields
+from assess.details import DETAILS, WHO
 from assess.i18n import gettext as _
 from assess.report import words
 from assess.report.content import Content
 from assess.report.say import work as say_work
-from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, of_field, row_height, widen
-from assess.schedule_results import Schedule, ScheduleRow, WorkRow
+from assess.report.say.orders import Line, list_lines, say_phases
+from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, row_height
+from assess.schedule_results import Schedule
 from assess.text import natural_key
 
 BOX = "☐"
 """To be ticked on paper."""
-FORCE, MONEY = "0.00", "#,##0.00"
-CHANGE = 7
-"""Column of the numbers of the table before and after, which are wide enough for its labels before them."""
+MONEY = "#,##0.00"
+HEAD = 1
+"""Row of the headings: above them stands that the list is as run."""
+MARGIN = 0.4
+"""Of the printed pages [in]."""
+LABELS = 7
+"""Columns that the labels of the table before and after take."""
 
 
 def write_work(pen: Pen, page: Any, content: Content) -> None:
-    """Write the work of every room, and below it the building before and after."""
-    schedule = content.run.schedule
-    works = say_work.list_work(content.fixes, [one.floor.floor for one in content.floors])
-    columns = widen(_list_columns(schedule), works)
+    """Write the work of every room, a page a floor, and below it the building before and after each phase."""
+    schedule, lines = content.run.schedule, list_lines(content)
+    columns = _list_columns(content)
     at = {one.key: place for place, one in enumerate(columns) if one.key}
-    page.fit_to_pages(1, 0)  # on A4 across, as every sheet is printed
-    page.repeat_rows(0)
-    page.freeze_panes(1, at["place"] + 1)
-    widths = [one.width for one in columns]
-    pen.heads(page, [one.label for one in columns], widths)
-    if not works:
-        pen.put(page, 1, 0, _("No free-standing piece reaches medium, and no route needs one fixed."))
+    widths, last = [one.width for one in columns], len(columns) - 1
+    for place, width in enumerate(widths):
+        page.set_column(place, place, width)
+    page.set_margins(left=MARGIN, right=MARGIN, top=0.75, bottom=0.75)
+    page.repeat_rows(0, HEAD)
+    page.freeze_panes(HEAD + 1, at["number"] + 1)
+    as_run = _("As run on {date}: this list does not follow what is edited in Items and Floors. To bring it up to "
+               "date, make the same changes in {file} and run it again.", date=content.date,
+               file=content.run.provenance.workbook)  # fmt: skip
+    _write_text(pen, page, 0, as_run, widths)
+    pen.heads(page, [one.label for one in columns], widths, HEAD)
+    if not lines:
+        none = _("No free-standing piece reaches medium, and no route needs one fixed.")
+        pen.put(page, HEAD + 1, 0, none)
         return
-    page.data_validation(1, at["done"], len(works), at["done"], {"validate": "list", "source": [BOX, "☑"]})
-    page.autofilter(0, 0, len(works), len(columns) - 1)
-    for row, work in enumerate(works, 1):
-        values = [one.read(work) for one in columns]
+    below = HEAD + 1 + len(lines)
+    page.data_validation(HEAD + 1, at["done"], below - 1, at["done"], {"validate": "list", "source": [BOX, "☑"]})
+    page.autofilter(HEAD, 0, below - 1, last)
+    floors = [line.work.row.floor for line in lines]
+    page.set_h_pagebreaks([HEAD + 1 + row for row in range(1, len(lines)) if floors[row] != floors[row - 1]])
+    for row, line in enumerate(lines, HEAD + 1):
+        values = [one.read(line) for one in columns]
         page.set_row(row, row_height(values, widths))
         for place, (column, value) in enumerate(zip(columns, values, strict=True)):
-            style = pen.style("text", column.format, bottom=4, align=column.align)
+            code = f'{column.format}"{say_work.LEAST}"' if line.has_least and "fixings" in column.key else column.format
+            style = pen.style("text", code, bottom=4, align=column.align)
             if column.key == "cost":
-                pieces, unit = (xl_rowcol_to_cell(row, at[name]) for name in ("pieces", "unit_cost"))
-                each = f"*{work.row.fixings}" if work.row.cost_per == "fixing" else ""
-                formula = f'=IF({unit}="","",{pieces}*{unit}{each})'
+                unit = xl_rowcol_to_cell(row, at["unit_cost"])
+                each = f"*{line.work.row.fixings}" if line.work.row.cost_per == "fixing" else ""
+                formula = f'=IF({unit}="","",{xl_rowcol_to_cell(row, at["pieces"])}*{unit}{each})'
                 page.write_formula(row, place, formula, style, "" if value is None else value)
             else:
                 pen.put(page, row, place, value, style)
-    below = len(works) + 1
     page.write_string(below, at["room"], _("Sum"), pen.style("total"))
-    pieces, cost = (f"{xl_col_to_name(at[name])}2:{xl_col_to_name(at[name])}{below}" for name in ("pieces", "cost"))
-    total = sum(one.row.pieces for one in works)
-    page.write_formula(below, at["pieces"], f"=SUM({pieces})", pen.style("total", COUNT), total)
-    costs = [work.row.cost for work in works if work.row.cost is not None]
-    formula, known = f'=IF(COUNT({cost})=0,"",SUM({cost}))', sum(costs) if costs else ""
-    page.write_formula(below, at["cost"], formula, pen.style("total", MONEY), known)
-    texts = [
-        _("This list is as run: it does not follow what is edited in Items and Floors."),
-        *say_work.say_effect_of_all(schedule),
-        _(say_work.ORDER),
-        _(say_work.CHECKS),
-        _(say_work.DISAGREEMENT),
-        *say_work.list_marks(schedule),
-    ]
+    for name, code in (("pieces", COUNT), ("all_fixings", COUNT), ("cost", MONEY)):
+        if name in at:
+            area = f"{xl_col_to_name(at[name])}{HEAD + 2}:{xl_col_to_name(at[name])}{below}"
+            known = [value for one in lines if (value := columns[at[name]].read(one)) is not None]
+            formula = f'=IF(COUNT({area})=0,"",SUM({area}))'
+            page.write_formula(below, at[name], formula, pen.style("total", code), sum(known) if known else "")
+    texts = [*say_work.say_effect_of_all(schedule), *say_phases(lines), _(say_work.ORDER), _(say_work.CHECKS),
+             _(say_work.DISAGREEMENT), *say_work.list_marks(schedule)]  # fmt: skip
     for row, text in enumerate(texts, below + 2):
-        page.merge_range(row, 0, row, len(widths) - 1, "", pen.style("text"))
-        page.set_row(row, LINE * count_lines(text, sum(widths)))
-        pen.put(page, row, 0, text, pen.style("text"))
-    _write_changes(pen, page, row + 2, schedule)
+        _write_text(pen, page, row, text, widths)
+    _write_changes(pen, page, below + 3 + len(texts), schedule)
 
 
-def _list_columns(schedule: Schedule) -> list[Column]:
-    def of_entry(name: str, width: int, *, only_first: bool = False, align: str = "") -> Column:
-        """Return a column of the whole entry, which stands with the most urgent part of it alone if `only_first`."""
-        field = schedule_fields(ScheduleRow)[name]
-        return of_field(field, key=name, width=width, align=align, read=lambda one: (
-            field.read(one.entry.row) if one.is_first or not only_first else None))  # fmt: skip
+def _write_text(pen: Pen, page: Any, row: int, text: str, widths: Sequence[int]) -> None:
+    page.merge_range(row, 0, row, len(widths) - 1, "", pen.style("text"))
+    page.set_row(row, LINE * count_lines(text, sum(widths)))
+    pen.put(page, row, 0, text, pen.style("text"))
 
-    own = {
-        name: of_field(field, key=name, read=partial(lambda field, one: field.read(one.row), field),
-                       format=MONEY if name in ("unit_cost", "cost") else field.format)
-        for name, field in schedule_fields(WorkRow).items()
-    }  # fmt: skip
-    screening = _(say_work.SCREENING)
-    has_code = any(work.tension_code_kn is not None for row in schedule.rows for work in row.works)
-    forces = ["tension_kn", "tension_high_kn", *(["tension_code_kn"] if has_code else []), "shear_kn"]
+
+def _list_columns(content: Content) -> list[Column]:
+    """Return the columns; together they are so wide that a page across A4 shows letters of 8 pt."""
+    schedule, total = content.run.schedule, content.run.schedule.before.falls
+
+    def photos(line: Line) -> str:
+        found = (str(one.item.field("photo") or "") for one in line.work.results)
+        return ", ".join(dict.fromkeys(filter(None, found)))
+
+    currency = f" [{schedule.currency}]" if schedule.currency else ""
+    costs = [
+        Column(_("Unit cost") + currency, 8, lambda one: one.work.row.unit_cost, MONEY, "unit_cost"),
+        Column(_("Cost") + currency, 9, lambda one: one.work.row.cost, MONEY, "cost"),
+    ] if schedule.cost is not None else []  # fmt: skip
     return [
         Column(_("Done"), 6, lambda _one: BOX, key="done", align="center"),
-        of_entry("place", 5, align="center"),
-        replace(own["floor"], width=6),
-        replace(own["room"], width=12),
-        replace(own["pieces"], align="center"),
-        Column(_("Names"), 14, lambda one: ", ".join(sorted(one.row.items, key=natural_key))),
-        Column(_("Description"), 16, lambda one: one.described),
-        Column(_("Why, as run"), 34, key="why", read=lambda one: "; ".join(
-            (f"{words.class_symbol(one.results[0])} {words.risk_words(one.results[0])}", one.chance, one.reason))),
-        Column(own["detail"].label, 13, lambda one: _(DETAILS[one.row.detail].title)),
-        *(replace(own[key], label=f"{own[key].label}: {screening}", format=FORCE) for key in forces),
-        replace(own["fixings"], align="center", read=lambda one: say_work.say_fixings(one.row)),
-        own["unit_cost"],
-        own["cost"],
-        of_entry("falls_avoided", 8, only_first=True),
-        of_entry("falls_left", 8, only_first=True),
-        Column(_("Remarks on the forces"), 26, key="remarks", read=lambda one: "; ".join(
-            filter(None, (_(say_work.HOLDS) if one.is_held_by_weight else "", one.marks)))),
-        Column(_("Photo"), 10, lambda one: ", ".join(
-            dict.fromkeys(str(each.item.field("photo")) for each in one.results if each.item.field("photo")))),
-        Column(_("Notes"), 18, lambda _one: ""),
+        Column(_("No."), 5, lambda one: one.number, key="number", align="center"),
+        Column(_("Phase"), 6, lambda one: one.when, align="center"),
+        Column(_("Floor"), 6, lambda one: one.work.row.floor),
+        Column(_("Room"), 12, lambda one: one.work.row.room, key="room"),
+        Column(_("Pieces"), 7, lambda one: one.work.row.pieces, COUNT, "pieces", align="center"),
+        Column(_("Names"), 14, lambda one: ", ".join(
+            words.join_runs(sorted(one.work.row.items, key=natural_key), 30))),
+        Column(_("What"), 15, lambda one: one.work.described),
+        Column(_("Fix with"), 15, lambda one: one.how),
+        Column(_("Who may do it"), 15, lambda one: _(WHO[DETAILS[one.work.row.detail].who])),
+        Column(_("Fixings each"), 8, lambda one: one.count_fixings() or None, COUNT, "fixings", align="center"),
+        Column(_("Fixings in all"), 8, lambda one: one.count_fixings(in_all=True) or None, COUNT, "all_fixings",
+               align="center"),
+        Column(_("Pull of one fixing"), 9, lambda one: one.say_pull()),
+        Column(_("Takes away"), 13, lambda one: one.say_effect(total)),
+        *costs,
+        Column(_("Photo"), 9, photos),
+        Column(_("Initials"), 8, lambda _one: ""),
+        Column(_("Date"), 8, lambda _one: ""),
+        Column(_("Notes"), 9, lambda _one: ""),
     ]  # fmt: skip
 
 
 def _write_changes(pen: Pen, page: Any, row: int, schedule: Schedule) -> None:
-    """Write the table before and after: its labels take the columns before those of its numbers."""
+    """Write the building before, and after each phase that is done; labels take the columns before the numbers."""
+    phases = [one for one in schedule.phases if one.phase != "C"]
+    heads = [_("Before"), *(_("After {phases}", phases=_and(phases[: at + 1])) for at in range(len(phases)))]
+    states = [schedule.before, *(one.after for one in phases)]
+    found = [
+        {one.label: one for part in say_work.list_changes(replace(schedule, after=state)) for one in part}
+        for state in states
+    ]
     page.write_string(row, 0, _("Before and after"), pen.style("heading"))
-    head = pen.style("head")
-    lines: list[tuple[tuple[str, Any, Any], Any, Any]] = [(("", _("Before"), _("After")), head, head)]
-    for one in (change for part in say_work.list_changes(schedule) for change in part):
-        form = pen.style("plain", FORCE if one.decimals else COUNT)
-        lines.append(((one.label, one.before, one.after), pen.style("text"), form))
-    for at, ((label, *values), wide, form) in enumerate(lines, row + 1):
-        page.merge_range(at, 0, at, CHANGE - 1, "", wide)
-        pen.put(page, at, 0, label, wide)
-        if label:
-            page.set_row(at, row_height([label], [40]))
-        for place, value in enumerate(values, CHANGE):
-            pen.put(page, at, place, value, form)
+    _write_change(pen, page, row + 1, "", heads, pen.style("head"))
+    for at, label in enumerate(dict.fromkeys(label for own in found for label in own), row + 2):
+        known = next(own[label] for own in found if label in own)
+        values = [own[label].after if label in own else 0 for own in found]
+        _write_change(pen, page, at, label, values, pen.style("plain", "0.00" if known.decimals else COUNT))
+
+
+def _and(phases: Sequence[Any]) -> str:
+    return say_work.join_names([one.phase for one in phases])
+
+
+def _write_change(pen: Pen, page: Any, row: int, label: str, values: Sequence[Any], form: Any) -> None:
+    wide = pen.style("text") if label else form
+    page.merge_range(row, 0, row, LABELS - 1, "", wide)
+    pen.put(page, row, 0, label, wide)
+    if label:
+        page.set_row(row, row_height([label], [50]))
+    for place, value in enumerate(values):
+        pen.put(page, row, LABELS + place, value, form)
