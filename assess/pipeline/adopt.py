@@ -28,12 +28,12 @@ from assess.model import AXES, Axis, Inventory, Item
 from assess.pipeline.demand import Demand
 from assess.results import BASES
 from assess.risk import RiskClass, classify_all, wilson_interval
-from assess.rocking.block import STOCKY
+from assess.rocking.block import ROLLS_FROM, STOCKY
 from assess.rocking.draws import MARGIN, Uncertainty
 from assess.route_results import DOUBTS, ROLLING
 from assess.routes.chances import Falls
 from assess.settings import Settings
-from assess.units import GRAVITY
+from assess.units import GRAVITY, ROUNDING
 
 if TYPE_CHECKING:
     from assess.motion.suite import Suite
@@ -42,9 +42,6 @@ if TYPE_CHECKING:
 IntArray = NDArray[np.int64]
 
 FORMULA, SIMULATED, UNCONFIRMED, CANNOT_ROCK, ROLLS = range(len(BASES))
-ROLLS_FROM = 0.35
-"""b/z_c [-] from which a piece on castors is taken to roll and not to overturn: one that is more slender may overturn
-where a castor meets a kerb or a threshold, or is locked. Assumed."""
 SQUARE = 1.3
 """Width over breadth [-] below which a piece counts as square on plan."""
 
@@ -91,6 +88,11 @@ def find_can_rock(cases: Cases, settings: Settings) -> BoolArray:
     return np.asarray((cases.pfa >= start) & ~cases.is_stocky)
 
 
+def find_rolling(cases: Cases, mobile: BoolArray) -> BoolArray:
+    """Return which of the pieces on castors (n,) roll and are not covered: those not so slender as to overturn."""
+    return np.asarray(mobile & (cases.threshold >= ROLLS_FROM * (1 - ROUNDING)))
+
+
 def find_start(cases: Cases, settings: Settings) -> FloatArray:
     """Return the share of g b/z that PFA has to reach for a piece to rock in any draw, (n,) [-]."""
     drawn, spread = Uncertainty(piece=not settings.ideal), np.zeros_like(cases.dispersion)
@@ -121,7 +123,7 @@ def adopt(outcomes: Mapping[str, Outcome], cases: Cases, settings: Settings, mob
     risk = np.maximum(classify_all(probability), at_least)
     ideal_higher = has_run & (classify_all(ideal) > risk)
     upper = np.where(has_run & can_rock, np.maximum(risk, classify_all(high)), risk)
-    rolls = mobile & (cases.threshold >= ROLLS_FROM)
+    rolls = find_rolling(cases, mobile)
     basis = np.select([rolls, ~can_rock, unconfirmed, has_run], [ROLLS, CANNOT_ROCK, UNCONFIRMED, SIMULATED], FORMULA)
     return Adoption(
         probability=probability, low=np.where(basis == SIMULATED, low, np.nan),

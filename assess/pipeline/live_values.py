@@ -13,7 +13,7 @@ from assess.errors import WorkbookError
 from assess.i18n import gettext
 from assess.methods import ALIKE, Cases, adopted_formula, paper_formula
 from assess.model import AXES, Inventory, Item
-from assess.pipeline.adopt import find_can_rock
+from assess.pipeline.adopt import find_can_rock, find_rolling, list_mobile
 from assess.pipeline.demand import Demand, build_demands
 from assess.pipeline.known_ground import find_ground
 from assess.pipeline.verify import find_peak
@@ -24,7 +24,7 @@ from assess.workbook.catalogue import read_catalogue
 from assess.workbook.example import example_content, room_content
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.lists import NO_SHAKING, RUN_ASSESS
-from assess.workbook.live_row import IS_ANCHORED
+from assess.workbook.live_row import IS_ANCHORED, IS_ROLLING
 from assess.workbook.read import read_inventory
 from assess.workbook.schema import CATALOGUE, CLASS, CLASS_OR, LIVE, NO, SHEETS, YES
 from assess.workbook.template import Content, Rows, Units
@@ -62,11 +62,11 @@ def live_values(inventory: Inventory, scenario: str | None = None) -> list[list[
     values = zip(*(outcome.value.tolist() for outcome in outcomes.values()), strict=True)
     strongest = np.array([max((one.pfa for one in own), default=np.nan) for own in options], dtype=np.float64)
     can_rock = find_can_rock(replace(cases, pfa=strongest), settings).tolist()
-    classes = []
+    rolls, classes = find_rolling(cases, list_mobile(inventory)).tolist(), []
     for method in (formula, paper_formula()):
         chances, flags = outcomes[method.key].value.tolist(), outcomes[method.key].flags
         outside = flags["extrapolated"].tolist()
-        classes.append(list(map(_show_class, inventory.items, governing, chances, outside, can_rock)))
+        classes.append(list(map(_show_class, inventory.items, governing, chances, outside, can_rock, rolls)))
     rows, ratios = [], cases.breadth_to_height.tolist()
     found = zip(ratios, governing, values, zip(*classes, strict=True), can_rock, strict=True)
     for ratio, motion, own, shown, rocks in found:
@@ -92,12 +92,19 @@ def _build_cases(items: Sequence[Item], motions: Sequence[Demand | None]) -> Cas
 
 
 def _show_class(
-    item: Item, governing: Demand | None, adopted: float, is_outside: bool = False, can_rock: bool = True
+    item: Item,
+    governing: Demand | None,
+    adopted: float,
+    is_outside: bool = False,
+    can_rock: bool = True,
+    rolls: bool = False,
 ) -> str:
     if item.anchored == YES:
         return gettext(IS_ANCHORED if item.bracket_capacity is None else RUN_ASSESS)
     if governing is None:
         return gettext(RUN_ASSESS)
+    if rolls:
+        return gettext(IS_ROLLING)
     risk = classify(adopted) if can_rock else RiskClass.LOW
     return say_class(RiskClass.LOW if risk is None else risk) + OUTSIDE * (is_outside and can_rock)
 

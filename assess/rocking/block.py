@@ -14,6 +14,9 @@ import numpy as np
 
 from assess.units import GRAVITY
 
+ROLLS_FROM = 0.35
+"""b/z_c [-] from which a piece on castors is taken to roll and not to overturn: one that is more slender may overturn
+where a castor meets a kerb or a threshold, or is locked. Assumed."""
 STOCKY = 1.41
 """From this B/H on [-] a uniform block does not rock: Housner's restitution 1 - 1.5 sin2(alpha) is zero at sqrt 2."""
 MIDDLE = 0.5

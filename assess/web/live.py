@@ -19,7 +19,7 @@ from assess.errors import AssessError, Gap, Problem
 from assess.i18n import gettext, load_catalogue, speaking
 from assess.methods import Method, paper_formula, simulation
 from assess.model import AXES, Inventory
-from assess.pipeline.adopt import SIMULATED, UNCONFIRMED, Assessment
+from assess.pipeline.adopt import ROLLS, SIMULATED, UNCONFIRMED, Assessment
 from assess.results import BASES
 from assess.risk import RiskClass, classify_all
 from assess.units import GRAVITY, LENGTH, VELOCITY
@@ -29,7 +29,7 @@ from assess.web.request_errors import say_sentence
 from assess.workbook.formulas import LIVE_METHODS, OUTSIDE, say_class
 from assess.workbook.habits import list_groups
 from assess.workbook.lists import NO_SHAKING, NO_UNIT, RUN_ASSESS, WRONG
-from assess.workbook.live_row import IS_ANCHORED, NO_AXIS, NO_FLOOR, NO_TYPE
+from assess.workbook.live_row import IS_ANCHORED, IS_ROLLING, NO_AXIS, NO_FLOOR, NO_TYPE
 from assess.workbook.names import find_sheet, key
 from assess.workbook.parse import Row, Table, Tables
 from assess.workbook.plain_rows import column_number
@@ -240,7 +240,7 @@ def _list_assessed(assessment: Assessment, labels: Sequence[str]) -> dict[int, L
     bases, waits = adoption.basis[at], assessment.waits
     low, high = _find_ranges(assessment)
     is_assumed, outside = simulated.flags["assumed_motion"][at], _find_outside(assessment, assessment.formula)
-    held, texts = assessment.held.tolist(), _name_classes(assessment, risks, outside)
+    held, texts = (assessment.held | (bases == ROLLS)).tolist(), _name_classes(assessment, risks, outside)
     columns, blank = _list_columns(assessment, texts) if labels else {}, [None] * count
     values = zip(*(columns.get(label, blank) for label in labels), strict=True) if labels else [()] * count
     shown = zip(
@@ -277,9 +277,11 @@ def _find_outside(assessment: Assessment, method: Method) -> NDArray[np.bool_]:
 
 
 def _name_classes(assessment: Assessment, risks: NDArray[Any], outside: NDArray[np.bool_]) -> list[str]:
-    words, anchored = {risk: say_class(risk) for risk in RiskClass}, gettext(IS_ANCHORED)
-    found = zip(risks.tolist(), outside.tolist(), assessment.held.tolist(), strict=True)
-    return [anchored if held else words[RiskClass(risk)] + OUTSIDE * marked for risk, marked, held in found]
+    words = {risk: say_class(risk) for risk in RiskClass}
+    rolling = assessment.adoption.basis[assessment.governing] == ROLLS
+    apart = np.select([assessment.held, rolling], [gettext(IS_ANCHORED), gettext(IS_ROLLING)], "").tolist()
+    found = zip(risks.tolist(), outside.tolist(), apart, strict=True)
+    return [word or words[RiskClass(risk)] + OUTSIDE * marked for risk, marked, word in found]
 
 
 def _list_columns(assessment: Assessment, classes: Sequence[str]) -> dict[str, Sequence[Any]]:

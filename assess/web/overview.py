@@ -79,7 +79,8 @@ def describe_results(results: Results, left: Sequence[Mapping[str, int] | None] 
     return {
         "outcome": say_outcome(total, results.route_tables),
         "about": [*filter(None, [say_ground(results, shortly=True)]), *say_apart(rows), *total.say_cannot_rock()],
-        "counts": {**counts, "unconfirmed": total.unconfirmed, "formula": total.by_formula, "anchored": total.anchored},
+        "counts": {**counts, "unconfirmed": total.unconfirmed, "formula": total.by_formula, "rolls": total.rolls,
+                   "anchored": total.anchored},
         "falls": [total.expected, total.falls_low, total.falls_high],
         "worst": [{**_describe_piece(alike[0]), "item": words.name_pieces([one.item.item for one in alike], 2),
                    "pieces": count_pieces(alike)} for alike in islice(_group(worst), MOST)],

@@ -5,8 +5,9 @@ and notes the cells of errors, so that what has been reported once is not report
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import islice
 
-from assess.details import ALTERNATIVES, DETAILS, find_detail
+from assess.details import ALTERNATIVES, DETAILS, find_detail, says_castors
 from assess.errors import Gap, Problem
 from assess.i18n import Text, fill, join, nfill
 from assess.model import AXES, MEASURED, CatalogueType
@@ -15,7 +16,7 @@ from assess.units import ROUNDING
 from assess.workbook.habits import shorten
 from assess.workbook.names import find_near_name, key
 from assess.workbook.parse import Row, Table, Tables
-from assess.workbook.resolve import defined, filled_sizes, name_currencies, turned_axis, types_by_name
+from assess.workbook.resolve import defined, filled_sizes, find_fixing, name_currencies, turned_axis, types_by_name
 from assess.workbook.schema import SHAKEN
 
 Check = Callable[[Tables], Iterable[Problem]]
@@ -271,6 +272,7 @@ def check_items(tables: Tables) -> Iterator[Problem]:
             lacking.setdefault(name, []).append(row)  # reported once for the column, not in every row
         found = [*_check_blank(table, row, [one for one in blank if one in table.places], is_listed=is_listed)]
         found += [*_check_sizes(table, row, sizes, kind), *_check_item(table, row, sizes)]
+        found += _ask_if_mobile(table, row, kind)
         if row.number not in faulty and not lacking:
             kept[row.number] = row, (kind, is_listed), found
         yield from found
@@ -281,6 +283,18 @@ def check_items(tables: Tables) -> Iterator[Problem]:
             len(rows), header=table.sheet.column(name).header(), row=str(rows[0].number),
         )  # fmt: skip
         yield table.problem_at_top(message, fill("Add the column, or give those rows such a Type."))
+
+
+def _ask_if_mobile(table: Table, row: Row, kind: CatalogueType | None) -> Iterator[Problem]:
+    """Ask whether a piece rolls that says so in words, where no Mobile tells."""
+    if not table.spoilt("mobile", row) and find_fixing(table, row, kind).get("mobile", True) is None:
+        named = (name for name in ("notes", "description", "type") if says_castors(row.get(name) or ""))
+        for name in islice(named, 1):
+            values = {"label": table.label(name), "mobile": table.sheet.column("mobile").label}
+            message = fill(
+                "{label} says that it stands on castors, and {mobile} does not say whether it rolls.", **values
+            )
+            yield table.habit(name, row, message, fill("Fill in {mobile}: yes or no.", **values), "note")
 
 
 def _check_blank(table: Table, row: Row, names: Iterable[str], *, is_listed: bool) -> Iterator[Problem]:

@@ -27,8 +27,21 @@ from assess.motion.scenario import PGA_OF_SDS
 from assess.rocking.block import MIDDLE
 from assess.rocking.draws import MOTION
 from assess.units import ALIASES, GRAVITY, QUANTITIES
-from assess.workbook.formulas import between, find_row, list_words, quote, trim, worse_axis
-from assess.workbook.schema import BUILDING, CATALOGUE, CLASS, FLOORS, ITEMS, LISTS, LIVE, SHEETS, WORKINGS, YES, Sheet
+from assess.workbook.formulas import between, find_row, is_among, list_words, quote, trim, worse_axis
+from assess.workbook.schema import (
+    BUILDING,
+    CATALOGUE,
+    CLASS,
+    FLOORS,
+    ITEMS,
+    LISTS,
+    LIVE,
+    NO,
+    SHEETS,
+    WORKINGS,
+    YES,
+    Sheet,
+)
 
 FROZEN = {ITEMS.name: 2}
 """Columns that stay in view while a table is scrolled; one where a sheet is not named."""
@@ -78,7 +91,7 @@ _OWN_SCENARIOS = {"asfilled": "as filled", "recorded": "recorded", "given": "giv
 _TYPE_SIZES, CENTRE = ("breadth", "width", "height"), "centre_of_gravity"
 _TYPED = {
     "Floors": ("floor", "elevation", "pfa_x", "pfa_y", "pfv_x", "pfv_y", "record_x", "record_y"),
-    "Catalogue": ("type", *_TYPE_SIZES, CENTRE),
+    "Catalogue": ("type", *_TYPE_SIZES, CENTRE, "mobile"),
 }
 """Fields of which a helper column is computed; their columns are named after them."""
 _FLOOR_HELPERS = (
@@ -88,8 +101,8 @@ _FLOOR_HELPERS = (
 """Columns of the sheet for a row of Floors, in this order: its name, its own motion by axis; Elevation [m], whether it
 has a motion of its own at grade, z/h, and where that lies in the table; PFV of a typed PFA, what follows from the
 ground, and the variance of ln of what is drawn; what it shows if it has no motion, and what serves each axis."""
-_TYPE_HELPERS = ("key", *_TYPE_SIZES, CENTRE)
-"""Columns of the sheet for a row of the Catalogue: its name, its sizes [cm], and its centre of gravity [-]."""
+_TYPE_HELPERS = ("key", *_TYPE_SIZES, CENTRE, "mobile")
+"""Columns of the sheet for a row of the Catalogue: name, sizes [cm], centre of gravity [-], whether on castors."""
 _SPEED = 100 * GRAVITY
 """From s to cm/s per g."""
 _COLUMNS = len(medians.PLACES) + 1
@@ -189,6 +202,7 @@ class ListsWriter:
         rows.append(("sizes_unit", gettext("unknown unit of a size"), formula, ""))
         for name, label, words in (
             ("anchored_words", gettext("words for anchored"), list_words(ANCHORED, YES)),
+            ("mobile_words", gettext("words for mobile"), list_words((YES, NO), YES)),
             ("scanned_words", gettext("words for sizes by a scan"), list_words(SIZES_FROM, SCANNED)),
         ):
             rows.append((name, label, f'"{words}"', words))
@@ -436,6 +450,7 @@ def _of_type(cells: Mapping[str, str]) -> Iterator[str]:
     centre, unit = _typed(CENTRE), f"unit_catalogue_{CENTRE}"
     share = f"IF({between(f'{centre}*{unit}', CATALOGUE.column(CENTRE))},{centre}*{unit},{quote(WRONG)})"
     yield _if_number(centre, f"IFERROR({share},{unit})", repr(MIDDLE))
+    yield is_among(_typed("mobile"), "mobile_words")
 
 
 def _typed(name: str) -> str:

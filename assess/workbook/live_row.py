@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from assess.methods import adopted_formula, paper_formula
 from assess.model import NEAR_AXIS
 from assess.risk import RiskClass
-from assess.rocking.block import MIDDLE
+from assess.rocking.block import MIDDLE, ROLLS_FROM
 from assess.rocking.draws import BASE, CENTRE, CUT, HEIGHT, MARGIN, SCANNED_BASE, SCANNED_HEIGHT
 from assess.settings import Settings
 from assess.units import ROUNDING
@@ -16,8 +16,8 @@ from assess.workbook.schema import CLASS, CLASS_OR, ITEMS, LIVE, NO, WORKINGS, Y
 
 NO_FLOOR, NO_AXIS, NO_TYPE = "floor?", "axis?", "type?"
 """What the live columns show without a known floor, with an unknown axis, and where no known type gives the sizes."""
-IS_ANCHORED = "anchored"
-"""What they show in place of the class of a piece that is anchored."""
+IS_ANCHORED, IS_ROLLING = "anchored", "rolls"
+"""What they show in place of the class of a piece that is anchored, or that stands on castors and rolls."""
 
 
 def list_live() -> dict[str, str]:
@@ -80,14 +80,28 @@ def _write_classes(cells: Mapping[str, str], own: Mapping[str, str]) -> dict[str
     # whether a bracket of known capacity holds is for the program to say
     held = f'IF(TRIM({own["bracket_capacity"]})="",{quote(IS_ANCHORED)},{quote(RUN_ASSESS)})'
     is_anchored = is_among(own["anchored"], "anchored_words")
-    either = f"IF({is_anchored},{held},IF(ISNUMBER({risk}),{words[paper.key]},{risk}))"
+    kind, blank = cells["Row in Catalogue"], f'TRIM({own["mobile"]})=""'
+    mobile = f"IF({blank},INDEX(type_mobile,{kind}),{is_among(own['mobile'], 'mobile_words')})"
+    rolls = f"IFERROR(AND({mobile},{ratio}/(2*{_centre(cells, own)})>={ROLLS_FROM * (1 - ROUNDING)!r}),FALSE)"
+    classed = f"IF({rolls},{quote(IS_ROLLING)},{words[paper.key]})"
+    either = f"IF({is_anchored},{held},IF(ISNUMBER({risk}),{classed},{risk}))"
     is_ready = f"OR(ISNUMBER({risk}),{risk}={quote(RUN_ASSESS)},{risk}={quote(NO_SHAKING)})"
     by_paper, chosen = cells[CLASS_OR], cells[adopted.short_title]
-    is_held = ",".join(f"{by_paper}={quote(word)}" for word in (IS_ANCHORED, RUN_ASSESS))
+    is_held = ",".join(f"{by_paper}={quote(word)}" for word in (IS_ANCHORED, IS_ROLLING, RUN_ASSESS))
     is_none = f'AND(ISNUMBER({ratio}),{live.is_stocky(ratio)},{chosen}="")'
     is_known = f"OR(ISNUMBER({chosen}),{is_none})"
     found = f"IF(OR({is_held},NOT({is_known})),{by_paper},{words[adopted.key]})"
     return {CLASS: f"=IF(class_by=2,{by_paper},{found})", CLASS_OR: f"=IF({is_ready},{either},{risk})"}
+
+
+def _centre(cells: Mapping[str, str], own: Mapping[str, str]) -> str:
+    """Expression for the height of the centre of gravity as a share of the piece's: its own, else its type's."""
+    kind, wrong = cells[WORKINGS[1]], quote(WRONG)
+    typed, unit = own["centre_of_gravity"], "unit_items_centre_of_gravity"
+    inside = live.between(f"{typed}*{unit}", ITEMS.column("centre_of_gravity"))
+    number = f"IF(ISNUMBER({typed}),IF({inside},{typed}*{unit},{wrong}),{wrong})"
+    of_type = f"IF(ISNUMBER({kind}),INDEX(type_centre_of_gravity,{kind}),{MIDDLE!r})"
+    return f'IF(TRIM({typed})="",{of_type},{number})'
 
 
 def _can_rock(cells: Mapping[str, str], own: Mapping[str, str]) -> str:
@@ -97,13 +111,8 @@ def _can_rock(cells: Mapping[str, str], own: Mapping[str, str]) -> str:
     the larger PFA counts, though the motion of the larger PFV governs: a row is then never lower than in a run.
     """
     ratio, pfa, *_ = (cells[label] for label in LIVE)
-    floor, kind, *_ = (cells[label] for label in WORKINGS)
-    typed, angle, wrong = own["centre_of_gravity"], own["angle_deg"], quote(WRONG)
+    floor, angle, wrong, centre = cells[WORKINGS[0]], own["angle_deg"], quote(WRONG), _centre(cells, own)
     units = [f"unit_{sheet}_centre_of_gravity" for sheet in ("items", "catalogue")]
-    inside = live.between(f"{typed}*{units[0]}", ITEMS.column("centre_of_gravity"))
-    number = f"IF(ISNUMBER({typed}),IF({inside},{typed}*{units[0]},{wrong}),{wrong})"
-    of_type = f"IF(ISNUMBER({kind}),INDEX(type_centre_of_gravity,{kind}),{MIDDLE!r})"
-    centre = f'IF(TRIM({typed})="",{of_type},{number})'
     sizes = (SCANNED_BASE[1], SCANNED_HEIGHT), (BASE[1], HEIGHT)
     by_scan, usual = (f"{base**2 + height**2:.6g}" for base, height in sizes)
     fixed = f"IF({is_among(own['sizes_from'], 'scanned_words')},{by_scan},{usual})"

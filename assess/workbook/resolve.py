@@ -157,7 +157,7 @@ def build_items(table: Table, types: Mapping[str, CatalogueType]) -> tuple[Item,
             items.append(before[2])
             continue
         typed = _find_in_type(table, row, types, FROM_TYPE)
-        values, assumed = {**row.values, **typed, **_find_fixing(table, row, kind)}, [*typed]
+        values, assumed = {**row.values, **typed, **find_fixing(table, row, kind)}, [*typed]
         if "axis" not in values and (axis := turned_axis(row)):
             values["axis"] = axis
             assumed.append("axis")
@@ -171,7 +171,7 @@ def build_items(table: Table, types: Mapping[str, CatalogueType]) -> tuple[Item,
     return tuple(items)
 
 
-def _find_fixing(table: Table, row: Row, kind: CatalogueType | None) -> dict[str, Any]:
+def find_fixing(table: Table, row: Row, kind: CatalogueType | None) -> dict[str, Any]:
     """Return how a piece is fixed, and whether it stands on castors where its row leaves that blank.
 
     As its type of the Catalogue says, and where that leaves it blank as the built-in type of its name.

@@ -24,7 +24,7 @@ const FORMATS = {
   json: () => t("All results, for other programs (JSON)"),
 };
 const VERIFY = { all: () => t("All pieces"), high: () => t("Pieces at risk or on a route"), none: () => t("None: by the formula only") };
-const APART = { unconfirmed: () => t("unconfirmed"), formula: () => t("not simulated"), anchored: () => t("anchored") };
+const APART = { unconfirmed: () => t("unconfirmed"), formula: () => t("not simulated"), rolls: () => t("rolls"), anchored: () => t("anchored") };
 
 class ResultsView {
   #root;
