@@ -1115,6 +1115,8 @@ class Results:
     * `series`: Where series for figures lie.
     * `schedule`: What to fix, with what, and what is to be expected before and after.
     * `texts`: The surveyor's own paragraphs, each with its section of the report: data, never markup.
+    * `size_falls`: Expected falls if the pieces whose sizes are the Catalogue's are all broader, and all narrower, than
+      it has them (thirds of their draws); None where that was not simulated.
     """
 
     settings: Settings
@@ -1137,6 +1139,7 @@ class Results:
     schedule: Schedule = NOTHING
     texts: tuple[tuple[str, str], ...] = ()
     draws: DrawTable = field(default_factory=lambda: NO_DRAWS)
+    size_falls: tuple[float, float] | None = None
 
     items: ClassVar = Frame("One row an item, with the columns of items.csv.")
     cases: ClassVar = Frame("One row a piece and motion.")

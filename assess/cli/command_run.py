@@ -218,7 +218,7 @@ def describe_result(results: "Results") -> Iterator[str]:
         worse = [f"If anchors fail, {held:,} would be worse."] if held else []
         yield " ".join((*say_route.count_all(routes), *worse, *say_route.say_to_fill_in(routes)))
     verified = Verified(results, rows).sentence if results.has_simulated else "Not simulated."
-    yield f"Chance of overturning in this scenario, not per year. {verified}"
+    yield f"Chance of overturning in an earthquake like this one, not per year. {verified}"
     yield from (f"{text}." for text in list_conditions(results))
     if assumed := " ".join(filter(None, (say_assumed(results), say_sensitivity(results, rows)))):
         yield assumed

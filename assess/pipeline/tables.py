@@ -11,12 +11,12 @@ import numpy as np
 
 from assess.annual_results import AnnualWays
 from assess.methods import Example, simulation
-from assess.methods.simulate import LOOKS, interval_width
+from assess.methods.simulate import LOOKS, draw_body, interval_width
 from assess.model import AXES, Item
 from assess.motion.record import treatment
 from assess.motion.scenario import PROFILES
 from assess.motion.spatial_field import SCATTERS
-from assess.pipeline.adopt import Assessment
+from assess.pipeline.adopt import SIMULATED, Assessment
 from assess.pipeline.anchors import build_anchors, find_anchor_code
 from assess.pipeline.demand import Demand, find_shaking, find_site
 from assess.pipeline.remarks import remark_on_shaking
@@ -99,7 +99,33 @@ def build_rows(assessment: Assessment, demands: Sequence[Demand], folder: Path, 
         texts=tuple((one.section, one.text) for one in inventory.texts),
         worked=() if example is None else tuple(work_example(example, assessment)), worked_item=example,
         series=Series(folder / "series.npz"), draws=DrawTable(draws, np.packbits(fell, axis=1), is_known),
+        size_falls=find_size_falls(assessment),
     )  # fmt: skip
+
+
+def find_size_falls(assessment: Assessment) -> tuple[float, float] | None:
+    """Return the expected falls with all pieces of catalogue sizes broader, then narrower, than the Catalogue has them.
+
+    Each such piece counts with the third of its own draws in which it is the stoutest, or the most slender.
+    """
+    cases, items, settings = assessment.cases, assessment.inventory.items, assessment.settings
+    if settings.ideal or not cases.uncertainty.piece:
+        return None
+    fell, counted = assessment.find_falls().fell, assessment.adoption.basis == SIMULATED
+    held, ends, has_any = 0.0, [0.0, 0.0], False
+    for at, case in enumerate(assessment.governing.tolist()):
+        if assessment.held[at] or not counted[case]:
+            continue
+        if at not in fell or not {"breadth", "height"} & set(items[at].assumed):
+            held += items[at].quantity * float(assessment.adoption.probability[case])
+            continue
+        has_any, runs = True, fell[at].size
+        body = draw_body(cases, np.array([case]), settings.seed, 0, runs)
+        order = np.argsort(-(body.breadth / (body.height * body.centre))[0], kind="stable")
+        third = max(1, runs // 3)
+        for end, draws in enumerate((order[:third], order[-third:])):
+            ends[end] += items[at].quantity * float(fell[at][draws].mean())
+    return (held + ends[0], held + ends[1]) if has_any else None
 
 
 def list_demands(assessment: Assessment) -> list[Demand]:

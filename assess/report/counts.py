@@ -77,7 +77,8 @@ class Counts:
     def falls(self) -> str:
         """The expected falls, and up to how many unconfirmed pieces besides."""
         expected = words.say_falls(self.expected, self.falls_low, self.falls_high)
-        return _("{expected} and up to {n:,}", expected=expected, n=self.unconfirmed) if self.unconfirmed else expected
+        return expected if not self.unconfirmed else _("{expected}, and up to {n:,} more", expected=expected,
+                                                       n=self.unconfirmed)  # fmt: skip
 
     def say(self, risk: RiskClass) -> str:
         """Return the number of a class for a table, as a range where intervals span a limit: ``7–12``."""

@@ -26,9 +26,12 @@ class HtmlWriter:
         self.letters: dict[str, str] = {}
 
     def section(self, one: blocks.Section) -> str:
-        """Return a section with its heading."""
+        """Return a section with its heading; on a screen one of the kind "fold" opens when its heading is chosen."""
         title = f'<h2 id="{one.id}-heading">{escape(one.heading)}</h2>\n' if one.heading else ""
-        return f"<section{_attributes(id=one.id, kind=one.kind)}>\n{title}{self.write_blocks(one.blocks)}</section>\n"
+        inside = f"{title}{self.write_blocks(one.blocks)}"
+        if "fold" in one.kind.split() and not self.for_print:
+            inside = f"<details>\n<summary>{title}</summary>\n{self.write_blocks(one.blocks)}</details>\n"
+        return f"<section{_attributes(id=one.id, kind=one.kind)}>\n{inside}</section>\n"
 
     def write_blocks(self, found: Iterable[blocks.Block]) -> str:
         """Return blocks, one below the other."""

@@ -122,11 +122,15 @@ def badge(one: ItemResult) -> Words:
 
 
 def mark(one: ItemResult) -> Runs:
-    """Return the class of a piece as a badge, with its marks, where there is no room for words."""
+    """Return the class of a piece as a badge, ``◇ medium to high`` where it could be a higher one."""
     if one.is_anchored:
         doubt = note(words.say_bracket(one)) if words.has_doubtful_bracket(one) else ""
         return join_words((Span(words.apart_label("anchored"), "badge anchored"), doubt))
-    return [Span([Span(words.class_label(one), f"badge {words.style_name(one)}"), words.class_marks(one)], "unit")]
+    highest = words.find_highest(one)
+    label = words.class_label(one)
+    if highest != one.adopted.risk and not one.apart:
+        label = _("{low} to {high}", low=label, high=words.risk_word(highest))
+    return [Span(label, f"badge {words.style_name(one)}")]
 
 
 def flags(names: Iterable[str]) -> Words:

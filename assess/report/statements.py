@@ -138,13 +138,13 @@ def list_limits(results: Results) -> Sequence[str]:
     of_routes = (
         _("Evacuation routes are screened by a rule of this program, as no published rule exists. Only pieces that "
           "overturn count: not what slides or rolls, spilt contents, jammed doors, fallen ceilings or people."),
-        _("An open route is not shown to be safe: its chance is below the chosen risk in this scenario, as far as "
-          "the workbook lists the furniture. The direction of a recorded motion is not used: a piece may fall either "
-          "way, unless it stands against a wall and the outline of its room tells on which side that is."),
+        _("An open route is not shown to be safe: its chance is below the chosen risk in an earthquake like this one, "
+          "as far as the workbook lists the furniture. The direction of a recorded motion is not used: a piece may "
+          "fall either way, unless it stands against a wall and the outline of its room tells on which side that is."),
     )  # fmt: skip
     return [
-        _("The chance is that of overturning in this scenario. It is not a chance per year, and does not state how "
-          "likely the scenario is."),
+        _("The chance is that of overturning in an earthquake like this one. It is not a chance per year, and does not "
+          "state how likely the scenario is."),
         _("Every piece is a rigid block on a rigid floor, moving in one vertical plane. Its centre of gravity is at "
           "mid-height unless Centre of gravity says otherwise, which simulation takes into account and the formulas "
           "do not. A top-heavy piece falls sooner, a bottom-heavy one later."),

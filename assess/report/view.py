@@ -7,7 +7,10 @@ from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
 from typing import Any, Literal
 
-from assess.i18n import gettext as _, ngettext
+from markupsafe import escape
+
+from assess.details import Detail
+from assess.i18n import gettext as _, ngettext, number
 from assess.progress import SILENT, Progress
 from assess.report import words
 from assess.report.blocks import Block, Inline, Paragraph, Section, Span
@@ -16,10 +19,12 @@ from assess.report.embedded import Photos
 from assess.report.figures.plan import Plan, build_plan
 from assess.report.figures.ways import build_stretches
 from assess.report.page_columns import PageColumn, list_columns, short_columns
+from assess.report.provenance import say_date
 from assess.report.report_options import ReportOptions
 from assess.report.say.route import list_segments
 from assess.results import ItemResult, Results
 from assess.route_results import SegmentRow
+from assess.workbook.schema import BUILDING
 
 Edition = Literal["client", "annex", "work", "all"]
 """What a manager acts on; what that rests on; what a caretaker does; the first two, for a screen."""
@@ -132,6 +137,33 @@ class View:
             return [Span(text, href=f"#{key}")]
         annex = _("(annex)")
         return [f"{text} {annex}" if self.edition == "client" else text]
+
+    def list_facts(self, names: Sequence[str]) -> list[tuple[str, str]]:
+        """Return what the sheet Building says in some of its lines, in words: each label with its text, "" if blank."""
+        found = []
+        for column in map(BUILDING.column, names):
+            value = getattr(self.run.building, column.name)
+            if column.kind == "date":
+                value = say_date(str(value or ""))
+            elif isinstance(value, float):
+                value = f"{number(value / column.factor, '.4g')} {column.unit}".strip()
+            elif column.kind in ("choice", "flag") and value not in (None, ""):
+                value = _(str(value))
+            found.append((_(column.label), "" if value is None else str(value)))
+        return found
+
+    def read_drawing(self, detail: Detail) -> str:
+        """Return the drawing of a way to fix a piece, as SVG with its title; "" where there is none."""
+        if not any((folder / "details" / (detail.drawing or "-")).is_file() for folder in self.options.folders):
+            return ""
+        drawn = self.options.read(f"details/{detail.drawing}")
+        title = escape(_("Drawing: {detail}", detail=_(detail.title)))
+        head, mark, rest = drawn[drawn.index("<svg") :].partition(">")
+        return f'{head} role="img" aria-label="{title}"{mark}<title>{title}</title>{rest.strip()}'
+
+    def list_texts(self, section: str) -> list[Block]:
+        """Return the free texts that the workbook has for a section."""
+        return [Paragraph(text, "free-text") for name, text in self.run.texts if name == section]
 
     def name_piece(self, at: int, longest: int = 20) -> Inline:
         """Return the name of a piece by its index, a link to its row where that is shown."""

@@ -134,6 +134,15 @@ def say_span(span: tuple[int, int]) -> str:
     return low if low == high else _("{low} to {high}", low=low, high=high)
 
 
+WHOLE = 10
+"""Expected falls from which they are rounded to whole ones in a sentence."""
+
+
+def round_falls(expected: float) -> str:
+    """Return expected falls as a sentence says them: ``12`` or ``3.1``."""
+    return number(expected, ",.0f" if expected >= WHOLE else ".1f")
+
+
 def say_falls(expected: float, low: float | None, high: float | None) -> str:
     """Return the expected falls, and what 5 and 95 % of the draws do not exceed: ``3.1 (1 to 6)``."""
     falls = fixed(expected, 1)
@@ -183,12 +192,15 @@ def in_m(value: float | None) -> str:
 
 
 def size(one: ItemResult) -> str:
-    """Return breadth, width and height [cm]."""
+    """Return breadth, width and height [cm]; of a piece whose width is not known the two that are, by name."""
+    if one.item.width_cm is None:
+        return _("B {breadth}, H {height}", breadth=in_cm(one.item.breadth_cm), height=in_cm(one.item.height_cm))
     return " × ".join(in_cm(side) for side in (one.item.breadth_cm, one.item.width_cm, one.item.height_cm))
 
 
 _NOUNS: Mapping[str, Callable[[int], str]] = {
     "piece": lambda n: ngettext("{n:,} piece", "{n:,} pieces", n),
+    "place": lambda n: ngettext("{n:,} place", "{n:,} places", n),
     "row": lambda n: ngettext("{n:,} row", "{n:,} rows", n),
     "floor": lambda n: ngettext("{n:,} floor", "{n:,} floors", n),
     "motion": lambda n: ngettext("{n:,} motion", "{n:,} motions", n),

@@ -1,3 +1,21 @@
+// What is folded opens where a link leads into it, and for printing.
+(() => {
+  "use strict";
+  const open = () => {
+    const target = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    for (let one = target; one; one = one.parentElement) {
+      const fold = one.tagName === "DETAILS" ? one : one.querySelector?.(":scope > details");
+      if (fold && !fold.open) fold.open = true;
+    }
+    if (target) target.scrollIntoView();
+  };
+  addEventListener("hashchange", open);
+  addEventListener("DOMContentLoaded", open);
+  addEventListener("beforeprint", () => {
+    for (const fold of document.querySelectorAll("details")) fold.open = true;
+  });
+})();
+
 // Filters and sorts the table of all pieces. Without it every row is shown, and the links between plan and table work.
 (() => {
   "use strict";

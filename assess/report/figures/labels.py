@@ -14,7 +14,7 @@ Bounds = tuple[float, float, float, float]
 """Left, low, right and high end."""
 Corners = tuple[Point, Point, Point, Point]
 
-LINE = 10.0
+LINE = 12.5
 """Height of a line of a name [px]."""
 MOST = 40
 """Labels of pieces on one plan."""
@@ -77,8 +77,8 @@ def bounds(corners: Sequence[Point]) -> Bounds:
 
 NAMED = 24
 """Characters of a place's name that are drawn."""
-FEW = 30
-"""Places on a plan up to which all are named: of more, mere points of routes are not, and doors where there is room."""
+RANKS = {"": 3, "corridor": 3, "door": 2}
+"""Of kinds of places: 3 are mere points of routes, which are not named, 2 are named where there is room."""
 LARGE = ("exit", "stair")
 """Kinds of places whose sign is a large one, and whose names come first."""
 
@@ -132,10 +132,9 @@ class Names:
         return found
 
     def place_spots(self, places: Sequence[tuple[Place, Point]], taken: Sequence[Bounds]) -> list[Spot]:
-        """Return each place with its name, as far as all are few; exits and stairs first."""
-        rank = {"": 3, "door": 2} if len(places) > FEW else {}
-        ordered = sorted(places, key=lambda pair: rank.get(pair[0].kind, pair[0].kind not in LARGE))
-        ranks = [rank.get(one.kind, 0) for one, _at in ordered]
+        """Return each place, rooms, exits and stairs with their names; exits and stairs first."""
+        ordered = sorted(places, key=lambda pair: RANKS.get(pair[0].kind, pair[0].kind not in LARGE))
+        ranks = [RANKS.get(one.kind, 0) for one, _at in ordered]
         sizes = [(12 if one.kind in LARGE else 6) * self.unit for one, _at in ordered]
         signs = [box_around(at, size, size) for (_one, at), size in zip(ordered, sizes, strict=True)]
         named = [(words.cut(one.place, NAMED), sign) for (one, _at), sign in zip(ordered, signs, strict=True)]
@@ -179,7 +178,7 @@ class Names:
         held, unit = [*names], self.unit
         placed: list[Label | None] = []
         for text, piece in named:
-            width = sum(3.9 if sign in _NARROW else 8.2 if sign in _WIDE else 5.8 for sign in text)  # [px], about
+            width = sum(3.6 if sign in _NARROW else 9.4 if sign in _WIDE else 6.2 for sign in text)  # [px], about
             wide, tall = 1.1 * width * unit, LINE * unit  # bold
             left, low, right, high = piece
             x, y = (left + right - wide) / 2, (low + high - tall) / 2

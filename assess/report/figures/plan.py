@@ -21,9 +21,9 @@ from assess.routes.geometry import fallen, rectangle
 
 ANCHORED = "#d0d0d0"
 """Fill of an anchored piece, which stands outside the classes."""
-WIDE, HIGH = 660.0, 780.0
-"""Most of a drawing [px]: the width of a page in upright format, and what of its height leaves room for the text."""
-BESIDE, BELOW = 26.0, 44.0
+WIDE, HIGH = 660.0, 520.0
+"""Most of a drawing [px]: what a page has room for at its own size, so that letters of 10.8 px print as 8 points."""
+BESIDE, BELOW = 30.0, 48.0
 """Room for the ticks, and for the scale bar below them [px]."""
 LARGEST = 90.0
 """Scale [px/m] that is not gone beyond for a few pieces close together."""
@@ -41,6 +41,7 @@ _TICKS = 12
 class Piece:
     """One piece; `number` is that of its row among all pieces, from 1, and `side` its shorter side [m].
 
+    `mark` is a text that stands in place of the sign of its class.
     `upper` is the class that it may reach; None where it stands outside the classes. `fallen` is what it would cover if
     it fell, one rectangle a way: only for a free-standing one of at least medium class, and inside the building's edge
     where that is known.
@@ -54,11 +55,11 @@ class Piece:
     fill: str
     ink: str
     symbol: str
-    marks: str
     side: float
     at: Point
     corners: Corners
     fallen: tuple[Ring, ...]
+    mark: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,10 +150,6 @@ class Plan:
         wide, tall = (box[2] - box[0]) / self.unit + 2, (box[3] - box[1]) / self.unit
         return f'x="{left:.1f}" y="{high:.1f}" width="{wide:.1f}" height="{tall:.1f}"'
 
-    def right(self, piece: Piece) -> float:
-        """Return where the right end of a piece lies in the drawing."""
-        return self.x(max(x for x, _y in piece.corners))
-
 
 def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) -> Plan | None:
     """Return the plan of a floor with its segments, or None where neither a piece nor a segment has a position."""
@@ -179,6 +176,7 @@ def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) 
     shapes = [bounds(one.corners) for one in pieces]
     signed = tuple(place_signs(ways, shapes, unit))
     signs = [(one.name, sign_box(one.sign, unit)) for one in signed if one.sign is not None]
+    warned = [(one.name, sign_box(one.sign, unit)) for one in signed if one.sign is not None and not one.is_open]
     names, taken = Names(frame, unit, shapes), [*shapes, *(box for _name, box in signs)]
     falls = [bounds(ring) for one in pieces for ring in one.fallen]
     spots = names.place_spots(places, [*taken, *falls])
@@ -191,7 +189,7 @@ def build_plan(page: FloorPage, results: Results, ways: Sequence[Stretch] = ()) 
     labels = [one for one in names.place(risky, taken) if one is not None]
     return Plan(
         key=f"plan-{[floor.floor for floor in results.floor_rows].index(page.floor.floor) + 1}", title=page.title,
-        pieces=pieces, places=tuple(spots), labels=tuple(labels), ways=signed, names=tuple(names.place_ways(signs)),
+        pieces=pieces, places=tuple(spots), labels=tuple(labels), ways=signed, names=tuple(names.place_ways(warned)),
         rooms=rooms, room_names=tuple(room_names), keys=tuple(names.keys), underlay=underlay,
         cut_at=edge[1] if edge else "", low=frame[:2], high=frame[2:], unit=unit,
         north=results.building.azimuth_deg,  # X lies as far clockwise from north as north anticlockwise from X
@@ -219,8 +217,8 @@ def crop_plan(plan: Plan, results: Results, room: str, numbers: Mapping[int, str
         return all(low[0] <= x <= high[0] and low[1] <= y <= high[1] for x, y in corners)
 
     pieces = tuple(
-        replace(one, symbol=numbers[one.number], marks="", fallen=()) if one.number in numbers
-        else replace(one, symbol="", marks="", fallen=(), fill=ANCHORED, ink=words.INK)
+        replace(one, symbol="", mark=numbers[one.number], fallen=()) if one.number in numbers
+        else replace(one, symbol="", fallen=(), fill=ANCHORED, ink=words.INK)
         for one in plan.pieces if is_inside(one.corners)
     )  # fmt: skip
     unit = max((high[0] - low[0]) / (WIDE - BESIDE), (high[1] - low[1]) / CROPPED, 1 / LARGEST)
@@ -251,7 +249,7 @@ def _build_piece(one: ItemResult, at: Point) -> Piece:
                 item=described, risk=words.risk_words(one), chance=words.chance(one)),
         class_name=words.style_name(one), ink=words.INK if is_outside else risk.ink,
         fill=ANCHORED if one.is_anchored else words.APART_FILL if one.apart else risk.fill,
-        symbol=words.class_symbol(one), marks="" if is_outside else words.class_marks(one), side=min(breadth, across),
+        symbol=words.style_name(one), side=min(breadth, across),
         at=at, corners=rectangle(at, angle, (-breadth / 2, breadth / 2), across), fallen=ways,
     )  # fmt: skip
 

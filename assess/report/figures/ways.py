@@ -1,4 +1,7 @@
-"""The evacuation routes on a plan: every segment as a band, with its state in colour, line and sign."""
+"""The evacuation routes on a plan: every segment as a band in the colour and line of the worst way that uses it.
+
+Its sign stands where the segment itself is not open.
+"""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,7 +17,7 @@ from assess.workbook.draft_names import is_draft
 
 NAMED = 20
 """Characters of a segment's name that are drawn."""
-SIGN = 6.0
+SIGN = 7.0
 """Radius of a sign [px]."""
 _ALONG = (0.5, 0.35, 0.65, 0.2, 0.8)
 """Where along a band its sign is tried."""
@@ -41,7 +44,7 @@ class Stretch:
     """A segment as it is drawn; `number` is that of its row among all segments, from 1.
 
     `sign` is where its sign stands: None where there is no room and nothing to warn of; `marks` stand next to it.
-    `is_draft`: its route was drafted from a building model and not walked.
+    `is_draft`: its route was drafted from a building model and not walked. `is_open`: it is open by itself.
     """
 
     number: int
@@ -53,6 +56,7 @@ class Stretch:
     corners: Corners
     marks: str = ""
     is_draft: bool = False
+    is_open: bool = True
     sign: Point | None = None
 
 
@@ -68,11 +72,16 @@ def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
         Style("standing", standing, blocked.symbol, blocked.fill, dark, white, "", 2.6),
     )
     order = [one.name for one in styles]
+    worst: dict[int, RouteState] = {}
+    for way in routes.routes:
+        for at in way.segment_indices:
+            worst[at] = max(worst.get(at, way.state), way.state, key=lambda state: state.severity)
     found: dict[str, list[Stretch]] = {}
     for number, one in enumerate(routes.segments, start=1):
         if not one.length_m or one.floor is None:
             continue
-        state = "unknown" if one.state == RouteState.NOT_KNOWN else str(one.state)
+        shown = max(one.state, worst.get(number - 1, one.state), key=lambda state: state.severity)
+        state = "unknown" if shown == RouteState.NOT_KNOWN else str(shown)
         start, end = (one.start_x_m or 0.0, one.start_y_m or 0.0), (one.end_x_m or 0.0, one.end_y_m or 0.0)
         along = (-one.extends_start_m, one.length_m + one.extends_end_m)  # as far as it goes on round a bend
         title = _("{segment}: {state}; chance of blockage {chance}",
@@ -88,7 +97,7 @@ def build_stretches(routes: RouteTables) -> Mapping[str, Sequence[Stretch]]:
             style=styles[order.index("standing" if one.is_blocked_standing else state)], start=start, end=end,
             corners=rectangle(start, angle, along, one.clear_width_used_m),
             marks=words.ANCHORED if is_held(one, routes.risk) else "",  # anchors alone keep it from being worse
-            is_draft=is_draft(one.route),
+            is_draft=is_draft(one.route), is_open=one.state == RouteState.OPEN,
         ))  # fmt: skip
     return {floor: sorted(own, key=lambda one: order.index(one.style.name)) for floor, own in found.items()}
 
@@ -101,7 +110,7 @@ def place_signs(ways: Sequence[Stretch], taken: Sequence[Bounds], unit: float) -
         tried = [sign_box((x + share * (x_end - x), y + share * (y_end - y)), unit) for share in _ALONG]
         ranked = zip(find_covered(tried, held), find_covered(tried, taken), tried, strict=True)
         *covered, best = min(ranked, key=lambda found: found[:2])
-        if one.style.name == "open" and not one.marks and sum(covered) > 0:
+        if one.is_open and not one.marks and (one.style.name != "open" or sum(covered) > 0):
             yield one
             continue
         held.append(best)

@@ -1,21 +1,19 @@
-"""The outcome of a building in one sentence: ``About 10 of 177 pieces fall; 3 of 20 ways out are blocked.``."""
+"""The outcome in one sentence: ``About 10 of 177 free-standing pieces fall; 3 of 20 ways out are likely blocked.``."""
 
 from collections import Counter
 from collections.abc import Mapping
 
-from assess.i18n import Text, fill, gettext as _, nfill, ngettext, number
+from assess.i18n import Text, fill, gettext as _, nfill, ngettext
 from assess.report import words
 from assess.report.counts import Counts
 from assess.route_results import RouteState, RouteTables
 
 FEW = 0.05
 """Expected falls below which none is expected."""
-WHOLE = 10
-"""Expected falls from which they are rounded to whole ones."""
 _WAYS: Mapping[RouteState, tuple[Text, Text]] = {
     RouteState.BLOCKED: (
-        nfill("{n:,} of {all:,} ways out is blocked", "{n:,} of {all:,} ways out are blocked", 0, all=0),
-        fill("the only way out is blocked"),
+        nfill("{n:,} of {all:,} ways out is likely blocked", "{n:,} of {all:,} ways out are likely blocked", 0, all=0),
+        fill("the only way out is likely blocked"),
     ),
     RouteState.DOUBTFUL: (
         nfill("{n:,} of {all:,} ways out is doubtful", "{n:,} of {all:,} ways out are doubtful", 0, all=0),
@@ -29,9 +27,11 @@ _WAYS: Mapping[RouteState, tuple[Text, Text]] = {
 """What is said of ways out in a state that is not open, the worst first."""
 
 
-def say_outcome(total: Counts, routes: RouteTables) -> str:
-    """Return the sentence; "" where there is neither a piece nor a route."""
+def say_outcome(total: Counts, routes: RouteTables, earthquake: str = "") -> str:
+    """Return the sentence, which may name the earthquake; "" where there is neither a piece nor a route."""
     said = "; ".join([*_say_falls(total), *_say_ways(routes)])
+    if said and earthquake:
+        said = _("In an earthquake like this one ({earthquake}), {outcome}", earthquake=earthquake, outcome=said)
     return f"{said[0].upper()}{said[1:]}." if said else ""
 
 
@@ -43,12 +43,12 @@ def _say_falls(total: Counts) -> list[str]:
     if not total.free:
         return apart
     if total.expected < FEW:
-        none = ngettext("The {n:,} free-standing piece is not expected to fall",
-                        "None of {n:,} free-standing pieces is expected to fall", total.free)  # fmt: skip
+        none = ngettext("the {n:,} free-standing piece is not expected to fall",
+                        "none of {n:,} free-standing pieces is expected to fall", total.free)  # fmt: skip
         return [none, *apart]
-    falls = number(total.expected, ",.0f" if total.expected >= WHOLE else ".1f")
-    said = ngettext("About {falls} of {n:,} free-standing piece falls",
-                    "About {falls} of {n:,} free-standing pieces fall", total.free, falls=falls)  # fmt: skip
+    falls = words.round_falls(total.expected)
+    said = ngettext("about {falls} of {n:,} free-standing piece falls",
+                    "about {falls} of {n:,} free-standing pieces fall", total.free, falls=falls)  # fmt: skip
     if total.falls_low is None or total.falls_high is None:
         return [said, *apart]
     return [f"{said} ({words.say_span((round(total.falls_low), round(total.falls_high)))})", *apart]

@@ -214,8 +214,8 @@ def say_occupants(one: SegmentRow) -> str:
     return _("{width} m: less in {chance}", width=needed, chance=say_chance(one.insufficient_after_falls))
 
 
-def say_missing(missing: Sequence[MissingRow]) -> str:
-    """Return what to fill in, and in which cells; "" if nothing is missing."""
+def say_missing(missing: Sequence[MissingRow], *, has_cells: bool = True) -> str:
+    """Return what to fill in, and in which cells if wanted; "" if nothing is missing."""
     texts = []
     for one in missing:
         names, cells = name_few(one.names), words.name_first(one.cells, MOST_NAMED)
@@ -231,13 +231,14 @@ def say_missing(missing: Sequence[MissingRow]) -> str:
             "unconfirmed_building": _("enter Storeys or the Period T1 in the sheet Building"),
             "unconfirmed_motions": _("run with motions of your own that reach the PFA and PFV of the floor"),
         }[one.what]
-        texts.append(f"{said} ({cells})" if cells else said)
+        texts.append(f"{said} ({cells})" if cells and has_cells else said)
     return "; ".join(texts)
 
 
-def say_missing_after(one: RouteRow | RoomRow) -> str:
+def say_missing_after(one: RouteRow | RoomRow, *, has_cells: bool = True) -> str:
     """Return what keeps a route or a room's way from being known once its fixes are done; "" where nothing does."""
-    return _("not known then; to settle it: {fix}", fix=say_missing(one.missing_after)) if one.missing_after else ""
+    fix = say_missing(one.missing_after, has_cells=has_cells)
+    return _("not known then; to settle it: {fix}", fix=fix) if fix else ""
 
 
 def list_unfixable(routes: RouteTables) -> list[tuple[RouteRow, str]]:
@@ -297,14 +298,14 @@ def say_default_width() -> str:
 
 def describe_routes(routes: RouteTables) -> list[str]:
     """Return the routes of a building in plain words, as sentences."""
-    return [*count_all(routes), _("These are chances in this scenario, not per year.")]
+    return [*count_all(routes), _("These are chances in an earthquake like this one, not per year.")]
 
 
 def count_all(routes: RouteTables) -> list[str]:
     """Return how many routes and rooms are in which state, on what that rests, and how many would be blocked."""
     texts = [
         ngettext("{n:,} evacuation route: {states}.", "{n:,} evacuation routes: {states}.", len(routes.routes),
-                 states=_count_states([one.state for one in routes.routes])),
+                 states=count_states([one.state for one in routes.routes])),
         *count_rooms(routes),
         *say_reservations(routes),
     ]  # fmt: skip
@@ -349,7 +350,7 @@ def count_rooms(routes: RouteTables) -> list[str]:
     if routes.rooms:
         texts.append(ngettext("Best way from {n:,} room to the street: {states}.",
                               "Best way from each of {n:,} rooms to the street: {states}.", len(routes.rooms),
-                              states=_count_states([one.state for one in routes.rooms])))  # fmt: skip
+                              states=count_states([one.state for one in routes.rooms])))  # fmt: skip
     if unjoined:
         texts.append(ngettext(
             "The workbook joins {n:,} more room to no exit or stair, so that its way out is not known: {named}. Add "
@@ -361,7 +362,8 @@ def count_rooms(routes: RouteTables) -> list[str]:
     return texts
 
 
-def _count_states(states: Sequence[RouteState]) -> str:
+def count_states(states: Sequence[RouteState]) -> str:
+    """Return how many of some routes or rooms are in which state: ``3 blocked, 14 open``."""
     texts = {
         RouteState.OPEN: nfill("{n:,} open", "{n:,} open", 0),
         RouteState.DOUBTFUL: nfill("{n:,} doubtful", "{n:,} doubtful", 0),
@@ -390,11 +392,11 @@ def say_uncounted(routes: RouteTables) -> str:
     if any(row.what in UNPLACED for one in rows for row in one.missing):
         return left_out
     if any(row.what in UNPLACED for one in rows for row in one.missing_after):
-        later = _("What is left out could change a state once the pieces listed are fixed.")
+        later = _("They could change a result above once the pieces listed are fixed.")
         return f"{left_out} {later}"
     if any(row.what in UNPLACED for one in routes.segments for row in one.missing):
         return left_out
-    none = _("None of them could change a state.")
+    none = _("They could not change any result above.")
     return f"{left_out} {none}"
 
 
@@ -412,14 +414,19 @@ def say_routes(results: Results) -> list[str]:
         chance, room = min(rooms, key=lambda one: (-one[0].probability, -one[0].high, natural_key(one[1])))
         texts.append(_("The room most likely to lose all exits is {room} with {chance}.", room=words.cut(room, 30),
                        chance=say_chance(chance)))  # fmt: skip
-    if held := [one.route for one in routes.routes if is_held(one, routes.risk)]:
-        texts.append(ngettext("If anchors fail, {n:,} route is worse: {names}.",
-                              "If anchors fail, {n:,} routes are worse: {names}.",
-                              len(held), names=name_few(held)))  # fmt: skip
+    texts += say_held(routes)
     if short := sum(one.insufficient_for_occupants for one in routes.segments):
         texts.append(ngettext("{n:,} segment is too narrow for its occupants as it stands.",
                               "{n:,} segments are too narrow for their occupants as they stand.", short))  # fmt: skip
     return [*texts, *([say_uncounted(routes)] if routes.uncounted_pieces else [])]
+
+
+def say_held(routes: RouteTables) -> list[str]:
+    """Return which ways out only anchors keep as they are; nothing where none."""
+    held = [one.route for one in routes.routes if is_held(one, routes.risk)]
+    return [ngettext("Way out {names} stays as it is only if the anchors beside it hold.",
+                     "Ways out {names} stay as they are only if the anchors beside them hold.", len(held),
+                     names=name_few(held))] if held else []  # fmt: skip
 
 
 def choose_rows(rows: Sequence[_Row], most: int, chance: Callable[[_Row], float]) -> list[_Row]:

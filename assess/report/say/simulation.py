@@ -1,5 +1,6 @@
 """What is said of the simulation: what it rests on, what was drawn, and what it changed."""
 
+import re
 from collections.abc import Iterable, Sequence
 
 from assess.i18n import fill, gettext as _, ngettext, number
@@ -33,8 +34,20 @@ def say_range(results: Results) -> str:
 def say_scenario(results: Results) -> str:
     """Return what the chances of a report are, for the foot of every page."""
     if results.annual is not None and results.annual.is_evaluated:
-        return _("Chance of overturning in this scenario, unless it is called a chance a year.")
-    return _("Chance of overturning in this scenario, not per year.")
+        return _("Chance of overturning in an earthquake like this one, unless it is called a chance a year.")
+    return _("Chance of overturning in an earthquake like this one, not per year.")
+
+
+def name_earthquake(results: Results) -> str:
+    """Return the earthquake in a few words: how the scenario of the workbook begins, or what shakes the floors."""
+    scenario = re.split(r"[,;.:(]", " ".join(results.building.scenario.split()), maxsplit=1)[0].strip()
+    if scenario:
+        return words.cut(scenario, 60)
+    if results.provenance.shaking:
+        return _(results.provenance.shaking.name)
+    if results.provenance.site_ground:
+        return name_source(results.provenance.site_ground)
+    return _("as recorded in it") if any(one.has_record for one in results.motions) else _("as the workbook gives it")
 
 
 class Verified:
@@ -382,6 +395,31 @@ def _has_drawn(results: Results) -> bool:
 def count_scanned(results: Results) -> int:
     """Return how many pieces have sizes that were measured by a scan."""
     return count_pieces(one for one in results if one.item.sizes_from == SCANNED)
+
+
+def list_effects(results: Results, rows: Sequence[ItemResult]) -> list[tuple[str, float, float]]:
+    """Return what could be otherwise than assumed, with the least and the largest expected falls then.
+
+    Counted are the pieces that the classes count. Where ground and building are drawn, it is what the slower and the
+    faster third of the draws give; else what the dispersions of the motion that were tried give.
+    """
+    counted = [one for one in rows if not one.is_anchored and one.adopted.is_simulated]
+    found = [(one.item.quantity, sim) for one in counted if (sim := one.governing.simulation) is not None]
+    effects = []
+    if drawn := [(n, (sim.if_slower, sim.if_faster)) for n, sim in found if None not in (sim.if_slower, sim.if_faster)]:
+        held = sum(n * sim.probability for n, sim in found if sim.if_slower is None)
+        ends = [held + sum(n * (pair[at] or 0.0) for n, pair in drawn) for at in (0, 1)]
+        effects.append((_("ground motion and building: slow or fast for their peak"), min(ends), max(ends)))
+    tried = sorted({at for _n, sim in found for at in sim.tried})
+    if tried and not results.settings.ideal:
+        low, high = tried[0], tried[-1]
+        ends = [sum(n * sim.tried.get(at, sim.probability) for n, sim in found) for at in (low, high)]
+        name = _("strength of such an earthquake: dispersion {low} to {high}", low=number(low), high=number(high))
+        effects.append((name, min(ends), max(ends)))
+    if results.size_falls is not None:
+        name = _("sizes from the catalogue: bases about 5 % narrower or broader")
+        effects.append((name, min(results.size_falls), max(results.size_falls)))
+    return effects
 
 
 def say_sensitivity(results: Results, rows: Sequence[ItemResult]) -> str:

@@ -1,17 +1,17 @@
 """What is said of what to fix: the entries by urgency, the work by room, the details, and what they change."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from assess.details import LEAST_FIXINGS
+from assess.details import CHECK, LEAST_FIXINGS
 from assess.fields import schedule_fields
 from assess.i18n import fill, gettext as _, ngettext, number
 from assess.report import words
 from assess.results import ItemResult, Results, count_pieces
 from assess.risk import RiskClass
 from assess.route_results import RouteTables
-from assess.schedule_results import Schedule, ScheduleRow, State, WorkRow
+from assess.schedule_results import NOTHING, PhaseRow, Schedule, ScheduleRow, State, WorkRow
 from assess.text import natural_key
 
 NAMED = 2
@@ -20,6 +20,8 @@ MOST_NAMES = 8
 """Names, or rows of them, that a page has room for; the Excel report holds all."""
 HELD = "¹"
 """Mark of a tension of 0 at 84 % of PFA."""
+LITTLE, A_DAY = 0.05, 8.0
+"""Falls below which next to nothing is avoided, and hours of a working day."""
 LEAST = "+"
 """Mark of a number of fixings that is the least, not a result."""
 WEIGHT, HEIGHT, METRE = "w", "h", "m"
@@ -304,6 +306,81 @@ def list_marks(schedule: Schedule) -> list[str]:
     return [f"{mark}: {text}." for mark, text in texts.items() if text]
 
 
+# ---------------------------------------------------------------- the plan
+
+
+def say_phase(phase: str) -> str:
+    """Return the title of a phase of the plan."""
+    return {
+        "A": _("A: now"), "B": _("B: with the next works"), "C": _("C: not worth it on its own, listed only"),
+    }[phase]  # fmt: skip
+
+
+def say_benefit(one: Work, total: float) -> str:
+    """Return what a whole entry takes away of the expected falls `total`, or would at most where it stands apart."""
+    row = one.entry.row
+    if row.falls_at_most:
+        return _("would avoid up to {falls} falls", falls=words.round_falls(row.falls_at_most))
+    if row.falls_avoided < LITTLE:
+        return _("takes hardly a fall away")
+    return _("takes {falls} of {total} expected falls away", falls=words.fixed(row.falls_avoided, 1),
+             total=words.round_falls(total))  # fmt: skip
+
+
+def say_all_fixings(work: WorkRow) -> str:
+    """Return the fixings of alike pieces, each and in all, and what one carries; a dash where none is counted."""
+    if not work.fixings:
+        return words.DASH
+    counted = _("{each} each, {all:,} in all", each=say_fixings(work), all=work.all_fixings)
+    if not work.pull_kn:
+        return _("{fixings}; the weight holds it", fixings=counted)
+    return _("{fixings}; {force} on each", fixings=counted, force=f"{say_force(work.pull_kn)} kN")
+
+
+def say_effort(phase: PhaseRow, schedule: Schedule) -> str:
+    """Return what a phase costs; where no cost is given its work, by assumed hours of one person."""
+    if schedule.cost is not None:
+        return say_cost(phase.cost, schedule.currency)
+    if phase.hours < A_DAY:
+        return ngettext("about {n:,} hour", "about {n:,} hours", max(1, round(phase.hours)))
+    return ngettext("about {n:,} working day", "about {n:,} working days", round(phase.hours / A_DAY))
+
+
+def name_places(schedule: Schedule, phase: str, most: int = 3) -> str:
+    """Return the rooms in which a phase takes most falls away, ``Library (42)``."""
+    avoided: dict[tuple[str, str], float] = {}
+    for one in schedule.rows:
+        if one.phase == phase:
+            avoided[one.floor, one.room] = avoided.get((one.floor, one.room), 0.0) + one.falls_avoided
+    ordered = sorted(avoided, key=lambda place: -avoided[place])
+    names = [
+        f"{words.cut(room, 24)} ({words.cut(floor, 8)})" if room else _("floor {floor}", floor=words.cut(floor, 12))
+        for floor, room in ordered
+    ]
+    return words.name_first(names, most)
+
+
+def say_check(row: ScheduleRow) -> str:
+    """Return why an anchor is to be checked, or a piece that rolls to be parked."""
+    if row.works[0].detail == CHECK:
+        falls = words.fixed(row.falls_at_most, 1)
+        return _("trusted to avoid {falls} falls", falls=falls) if row.falls_at_most >= LITTLE else _("trusted to hold")
+    return _("rolls: not covered by the chances")
+
+
+def say_checks(schedule: Schedule) -> str:
+    """Return how many anchors are to be checked and pieces to be parked, in one sentence; "" for none."""
+    counted = {key: sum(one.pieces for one in schedule.checks if (one.works[0].detail == CHECK) == key)
+               for key in (True, False)}  # fmt: skip
+    texts = [
+        ngettext("check the anchors of {n:,} piece", "check the anchors of {n:,} pieces", counted[True])
+        if counted[True] else "",
+        ngettext("lock or park {n:,} piece that rolls", "lock or park {n:,} pieces that roll", counted[False])
+        if counted[False] else "",
+    ]  # fmt: skip
+    return "; ".join(filter(None, texts))
+
+
 class Change(NamedTuple):
     """One number of the building before and after the schedule; `decimals` is how it is shown."""
 
@@ -311,6 +388,17 @@ class Change(NamedTuple):
     before: float
     after: float
     decimals: int = 0
+
+
+def list_states(states: Sequence[State]) -> list[tuple[str, list[float], int]]:
+    """Return what is to be expected of the building in some states: each number with its label and decimals."""
+    found: dict[str, list[float]] = {}
+    decimals: dict[str, int] = {}
+    for state in states:
+        for change in (one for part in list_changes(replace(NOTHING, before=states[0], after=state)) for one in part):
+            found.setdefault(change.label, []).append(change.after)
+            decimals[change.label] = change.decimals
+    return [(label, values, decimals[label]) for label, values in found.items() if len(values) == len(states)]
 
 
 def list_changes(schedule: Schedule) -> tuple[list[Change], list[Change]]:

@@ -7,19 +7,17 @@ from assess.model import AXES
 from assess.report import blocks, words
 from assess.report.content import FloorPage
 from assess.report.counts import Counts, count
-from assess.report.figures.bars import draw_bars
 from assess.report.figures.plan import Plan
-from assess.report.page_columns import build_table, motion_columns
+from assess.report.page_columns import motion_columns
 from assess.report.say import ground
-from assess.report.say.piece import list_apart, list_risky
+from assess.report.say.piece import describe, find_kind, list_apart, list_risky
 from assess.report.templates import open_template
 from assess.report.view import MOST_ROWS, Part, View
-from assess.results import ItemResult
+from assess.results import ItemResult, count_pieces
 from assess.risk import RiskClass
-from assess.text import natural_key
 
-BESIDE_PLAN = 8
-"""Rows of the risky pieces that are listed next to a plan."""
+BESIDE_PLAN, BESIDE_TABLE = 8, 30
+"""Rows of the risky pieces that are listed next to a plan, and below the table of the floors without one."""
 MOST = 6
 """Motions of a floor that the table lists."""
 KINDS = ("exit", "stair", "door", "room")
@@ -27,24 +25,34 @@ KINDS = ("exit", "stair", "door", "room")
 
 
 def build_floors(view: View) -> blocks.Section:
-    """Return the floors that have pieces or a segment of a route on their plan, a page each."""
+    """Return each floor that has a plan, and all others in one table."""
     shown, everything = view.content.shown_floors, view.content.floors
-    boxes: list[blocks.Block] = [_build_floor(view, page, at) for at, page in enumerate(shown, start=1)]
+    drawn = [(page, plan) for page in shown if (plan := view.plans.get(page.floor.floor))]
+    others = [page for page in shown if not view.plans.get(page.floor.floor)]
+    found: list[blocks.Block] = [_build_floor(view, page, plan, at) for at, (page, plan) in enumerate(drawn, start=1)]
+    if drawn:
+        text = _("Plans show every piece with a position, to scale, with the symbol of its class. Hatched is the floor "
+                 "that a piece of medium class or above would cover if it fell: to either side, or away from its wall "
+                 "where that is known. Bands are the ways out, as wide as they are clear, in the colour of the worst "
+                 "way that uses them; a sign stands on what is not open by itself. ⚓ assumes the anchors "
+                 "hold.")  # fmt: skip
+        found.insert(0, blocks.Paragraph(text, "small"))
+    if others:
+        inside: list[blocks.Block] = [blocks.Heading(_("Floors without a plan"))] if drawn else []
+        results = [one for page in others for one in page.results]
+        inside.append(_count_floors(view, others, is_short=True))
+        inside += _list_pieces(view, count("", results), results, BESIDE_TABLE)
+        found.append(blocks.Box(inside, "floor brief", "article", f"floor-{len(drawn) + 1}"))
     if empty := len(everything) - len(shown):
-        boxes.append(blocks.Paragraph(ngettext("{n:,} floor has no pieces and no page of its own.",
-                                               "{n:,} floors have no pieces and no page of their own.",
-                                               empty)))  # fmt: skip
-    return blocks.Section(boxes)
+        found.append(blocks.Paragraph(ngettext("{n:,} floor has no pieces and is left out.",
+                                               "{n:,} floors have no pieces and are left out.", empty)))  # fmt: skip
+    return blocks.Section([*view.list_texts("Floors"), *found], "" if drawn else "run-on")
 
 
-def _build_floor(view: View, page: FloorPage, at: int) -> blocks.Box:
-    plan, risky, counts = view.plans.get(page.floor.floor), list_risky(page.results), page.counts
-    apart = (
-        ("unconfirmed", counts.unconfirmed),
-        ("formula", counts.by_formula),
-        ("rolls", counts.rolls),
-        ("anchored", counts.anchored),
-    )
+def _build_floor(view: View, page: FloorPage, plan: Plan, at: int) -> blocks.Box:
+    counts = page.counts
+    apart = (("unconfirmed", counts.unconfirmed), ("formula", counts.by_formula), ("rolls", counts.rolls),
+             ("anchored", counts.anchored))  # fmt: skip
     classes = [f"{words.risk_label(risk)} {counts.say(risk)}" for risk in reversed(RiskClass)]
     classes += [f"{words.apart_label(name)} {pieces:,}" for name, pieces in apart if pieces]
     counted = _("{pieces}: {classes}; expected falls {falls}.", pieces=words.plural(counts.total, "piece"),
@@ -54,42 +62,24 @@ def _build_floor(view: View, page: FloorPage, at: int) -> blocks.Box:
         blocks.Paragraph(ground.say_motions(page.floor, page.motions), "motion"),
         blocks.Paragraph(counted, "motion"),
     ]
-    if plan:
-        if plan.pieces:
-            texts = [_("Plan: every piece with a position, to scale, with the symbol of its class; hatched: the floor "
-                       "that a piece of medium class or above would cover if it fell: to either side, or away from its "
-                       "wall where that is known."), view.marks]  # fmt: skip
-            if left := sum(one.item.x_m is None or one.item.y_m is None for one in page.results):
-                texts.append(ngettext("{n:,} row without a position is left out.",
-                                      "{n:,} rows without a position are left out.", left))  # fmt: skip
-        else:
-            texts = [_("Plan: no piece of this floor has a position.") if page.results
-                     else _("Plan: this floor has no pieces.")]  # fmt: skip
-        if plan.ways:
-            texts.append(_("Bands: segments of evacuation routes, as wide as they are clear, with the sign of their "
-                           "state. ? could be worse; ⚓ assumes the anchors hold."))  # fmt: skip
-            if drafts := sum(one.is_draft for one in plan.ways):
-                texts.append(ngettext("{n:,} of {all:,} segments drawn is drafted, not walked.",
-                                      "{n:,} of {all:,} segments drawn are drafted, not walked.",
-                                      drafts, all=len(plan.ways)))  # fmt: skip
-        kind = f"plan rows-{min(len(risky), BESIDE_PLAN)}"
-        about = " ".join(filter(None, texts))
-        found.append(_draw_plan(plan, view, about, kind))
-    title = _("Bars: pieces of each class in every room of {floor}", floor=page.title)
-    bars = draw_bars(count_rooms(page.results), title) if page.results and not (plan and plan.pieces) else None
-    if bars:
-        caption = [
-            _("Pieces by class and room; no piece of this floor has a position on the plan."),
-            ngettext("{n:,} more room is left out.", "{n:,} more rooms are left out.", bars[1]) if bars[1] else "",
-            say_changes(counts),
-        ]  # fmt: skip
-        found.append(blocks.Figure(bars[0], blocks.join_words(caption)))
-    found += _list_pieces(view, page, risky, BESIDE_PLAN if plan else 20, "" if plan else view.marks)
-    is_brief = not plan and len(page.results) <= 12  # then it shares a page with the next
-    return blocks.Box(found, f"floor{' brief' if is_brief else ''}", "article", f"floor-{at}")
+    texts = list[str]()
+    if plan.pieces:
+        if left := sum(one.item.x_m is None or one.item.y_m is None for one in page.results):
+            texts.append(ngettext("{n:,} row without a position is left out.",
+                                  "{n:,} rows without a position are left out.", left))  # fmt: skip
+    else:
+        texts.append(_("Plan: no piece of this floor has a position.") if page.results
+                     else _("Plan: this floor has no pieces."))  # fmt: skip
+    if drafts := sum(one.is_draft for one in plan.ways):
+        texts.append(ngettext("{n:,} of {all:,} segments drawn is drafted, not walked.",
+                              "{n:,} of {all:,} segments drawn are drafted, not walked.",
+                              drafts, all=len(plan.ways)))  # fmt: skip
+    found.append(_draw_plan(plan, view, " ".join(texts)))
+    found += _list_pieces(view, counts, page.results, BESIDE_PLAN)
+    return blocks.Box(found, "floor", "article", f"floor-{at}")
 
 
-def _draw_plan(plan: Plan, view: View, about: str, kind: str) -> blocks.Figure:
+def _draw_plan(plan: Plan, view: View, about: str) -> blocks.Figure:
     """Return the plan, whose pieces and segments lead to their rows on a screen.
 
     Its legend says what signs and colours mean, the names that had no room, and where the drawing under it comes from.
@@ -102,8 +92,8 @@ def _draw_plan(plan: Plan, view: View, about: str, kind: str) -> blocks.Figure:
     badges = [blocks.Span(words.risk_label(risk), f"badge {words.class_name(risk)}") for risk in RiskClass]
     badges += [
         blocks.Span(words.apart_label(name), "badge apart")
-        for sign, name in ((words.UNCONFIRMED, "unconfirmed"), (words.BY_FORMULA, "formula"))
-        if any(one.symbol == sign for one in plan.pieces)
+        for name in ("unconfirmed", "formula", "rolls")
+        if any(one.symbol == f"apart-{name}" for one in plan.pieces)
     ]
     badges.append(blocks.Span(words.apart_label("anchored"), "badge anchored"))
     legend = [blocks.Paragraph(blocks.join_words(badges), "small legend")]
@@ -126,48 +116,38 @@ def _draw_plan(plan: Plan, view: View, about: str, kind: str) -> blocks.Figure:
     elif plan.cut_at:
         texts.append(_("Hatching ends at the frame of the plan."))
     legend += [blocks.Paragraph(" ".join(texts), "small legend")] if texts else []
-    return blocks.Figure(image, about, kind, legend)
+    return blocks.Figure(image, about, "plan", legend)
 
 
-def say_changes(counts: Counts) -> str:
-    """Return how many classes were lowered or could be higher; "" where none."""
-    if not counts.lowered and not counts.may_be:
-        return ""
-    return _("Lowered by simulation: {lowered:,}; could be of a higher class: {could_be:,}.",
-             lowered=counts.lowered, could_be=counts.may_be)  # fmt: skip
-
-
-def count_rooms(results: Sequence[ItemResult]) -> list[Counts]:
-    """Count the pieces of each room, the rooms with most of high and very high class first, then by name."""
-    rooms: dict[str, list[ItemResult]] = {}
-    for one in results:
-        rooms.setdefault(one.item.room, []).append(one)
-    counts = [
-        count(words.cut(room, 40) if room else _("no room named"), rooms[room])
-        for room in sorted(rooms, key=natural_key)
-    ]
-    return sorted(counts, key=lambda one: -one.risky)
-
-
-def _list_pieces(view: View, page: FloorPage, risky: Sequence[ItemResult], most: int, marks: str) -> list[blocks.Block]:
-    counts, left = page.counts, list_risky(page.results, "formula")
-    unconfirmed = list_apart(page.results, "unconfirmed")
+def _list_pieces(view: View, counts: Counts, results: Sequence[ItemResult], most: int) -> list[blocks.Block]:
+    """Return the pieces of one floor, or of several, that are high or above, and those that stand apart."""
+    risky, left, unconfirmed = list_risky(results), list_risky(results, "formula"), list_apart(results, "unconfirmed")
+    place = "room_short" if len({one.item.floor for one in results}) == 1 else "place"
     found: list[blocks.Block] = []
 
-    def list_some(rows: Sequence[ItemResult], text: str, *columns: str, after: str = "") -> None:
-        if rows:
-            first = _("The first {most}:", most=most) if len(rows) > most else ""
-            found.append(blocks.Paragraph(blocks.join_words((text, first, after)), "lead-in"))
-            shown = view.columns("piece", "room_short", "size", "quantity", *columns)
-            found.append(build_table(shown, rows[:most], "short" if "chance" in columns else "apart"))
+    def list_some(rows: Sequence[ItemResult], text: str, *columns: str) -> None:
+        groups: dict[tuple[object, ...], list[ItemResult]] = {}
+        for one in rows:
+            groups.setdefault((*find_kind(one), one.item.room, round(one.adopted.probability, 6)), []).append(one)
+        if groups:
+            first = _("The first {most}:", most=most) if len(groups) > most else ""
+            found.append(blocks.Paragraph(blocks.join_words((text, first)), "lead-in"))
+            shown = view.columns("piece", place, "size", "quantity", *columns)
+            cells = [
+                [_name_alike(own), *(column.cell(own[0]) if column.key != "quantity" else str(count_pieces(own))
+                                     for column in shown[1:])]
+                for own in list(groups.values())[:most]
+            ]  # fmt: skip
+            kind = "short" if "chance" in columns else "apart"
+            found.append(blocks.table([one.column for one in shown], cells, kind, is_named=True))
 
     text = ngettext("{n:,} row is high or very high, including borderline cases.",
                     "{n:,} rows are high or very high, including borderline cases.", len(risky))  # fmt: skip
-    list_some(risky, text, "chance", "class", after=marks)
+    list_some(risky, text, "chance", "class")
     if not risky and counts.free and view.content.total.has_apart:
-        found.append(blocks.Paragraph(_("No simulated free-standing piece on this floor reaches high.")))
-    elif not risky and (counts.free or (page.results and not counts.has_apart)):
-        found.append(blocks.Paragraph(_("No free-standing piece on this floor reaches high.")))
+        found.append(blocks.Paragraph(_("No simulated free-standing piece here reaches high.")))
+    elif not risky and (counts.free or (results and not counts.has_apart)):
+        found.append(blocks.Paragraph(_("No free-standing piece here reaches high.")))
     text = ngettext("{n:,} row is unconfirmed, as nothing is known of the building, or as the motions are too weak to "
                     "confirm its lower class.",
                     "{n:,} rows are unconfirmed, as nothing is known of the building, or as the motions are too weak "
@@ -176,21 +156,18 @@ def _list_pieces(view: View, page: FloorPage, risky: Sequence[ItemResult], most:
     text = ngettext("{n:,} row that was not simulated is high or very high by formula.",
                     "{n:,} rows that were not simulated are high or very high by formula.", len(left))  # fmt: skip
     list_some(left, f"{words.BY_FORMULA} {text}", "formula", "class")
-    if counts.lowered:
-        found.append(blocks.Paragraph(ngettext(
-            "Simulation lowered the class of {n:,} free-standing piece on this floor; it is marked in the table of all "
-            "pieces.",
-            "Simulation lowered the class of {n:,} free-standing pieces on this floor; each is marked in the table of "
-            "all pieces.",
-            counts.lowered,
-        )))  # fmt: skip
     return found
+
+
+def _name_alike(own: Sequence[ItemResult]) -> str:
+    """Return the names of alike pieces, and what they are."""
+    return f"{words.name_pieces([one.item.item for one in own], 3, 14)}: {describe(own[0], 34)}"
 
 
 def build_motions(view: View) -> blocks.Section:
     """Return the floors with their counts, the sources of their motions with cautions, and each motion."""
     found: list[blocks.Block] = [
-        _count_floors(view),
+        _count_floors(view, view.content.floors),
         blocks.Heading(_("Where the motion of each floor comes from")),
         blocks.Bullets(ground.list_sources(view.run.motions)),
         *(blocks.Paragraph(one.text, "caution") for one in view.content.cautions),
@@ -211,10 +188,13 @@ def build_motions(view: View) -> blocks.Section:
     return blocks.Section([*found, blocks.Table([one.column for one in columns], groups, "demand", is_named=True)])
 
 
-def _count_floors(view: View) -> blocks.Table:
-    """Return the pieces of each floor by class; with columns of what is counted apart, without those of the changes."""
+def _count_floors(view: View, pages: Sequence[FloorPage], *, is_short: bool = False) -> blocks.Table:
+    """Return the pieces of floors by class; with columns of what is counted apart, without those of the changes.
+
+    A short one has no columns of changes, and no sum.
+    """
     total = view.content.total
-    has_changes = bool(view.content.verified.done) and not total.has_apart
+    has_changes = bool(view.content.verified.done) and not total.has_apart and not is_short
     caption = [
         _("Motion of each floor, and its pieces by class; anchored pieces have no class."),
         _("Classes and expected falls are of simulated pieces alone. Unconfirmed pieces and those by formula only are "
@@ -252,11 +232,12 @@ def _count_floors(view: View) -> blocks.Table:
         (_("Expected falls"), "w14" if total.unconfirmed else "w9", "num"),
     )  # fmt: skip
     rows = []
-    for page in view.content.floors:
+    for page in pages:
         peaks = (words.in_g(max(one.pfa_g for one in page.motions if one.axis == axis)) for axis in AXES)
         cells = [blocks.head(words.cut(page.counts.label, 30)), ", ".join(peaks), *list_cells(page.counts)]
         rows.append(blocks.Row(cells))
-    rows.append(blocks.Row([blocks.head(total.label), "", *list_cells(total, is_total=True)], "total"))
+    if not is_short:
+        rows.append(blocks.Row([blocks.head(total.label), "", *list_cells(total, is_total=True)], "total"))
     return blocks.table(columns, rows, "counts", blocks.join_words(caption))
 
 

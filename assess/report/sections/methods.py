@@ -1,9 +1,8 @@
 """What the report rests on: methods with their equations, assumptions, limits, sources, input, and how it was made."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
-from assess.i18n import fill, gettext as _, ngettext, number
+from assess.i18n import fill, gettext as _, number
 from assess.report import blocks, statements, words
 from assess.report.figures.draw import build_figure
 from assess.report.figures.motion_figures import draw_motion, get_acceleration
@@ -18,14 +17,9 @@ from assess.results import ItemResult, MotionRow
 from assess.risk import classify
 from assess.workbook.schema import BUILDING, NO, YES
 
-if TYPE_CHECKING:
-    pass
-
 WHOLE = 14
 """Lines of equations that are kept on one page."""
 
-MOST_ASSUMPTIONS = 36
-"""Assumptions that the client's edition has room for on a page; where there are more, the annex has all."""
 MOST_NOTES, MOST_PROBLEMS, FEW = 150, 120, 6
 """Notes and problems that are shown; rows up to which a table is kept on one page."""
 
@@ -145,13 +139,9 @@ def build_approach(view: View) -> blocks.Section:
 
 
 def build_assumptions(view: View) -> blocks.Section:
-    """Return the assumptions, in the client's edition as many as a page has room for."""
-    found = view.content.assumptions
-    shown = found[:MOST_ASSUMPTIONS] if view.edition == "client" else found
-    left = len(found) - len(shown)
-    text = ngettext("{n:,} more is in the annex.", "{n:,} more are in the annex.", left)
+    """Return the assumptions."""
     heads = blocks.list_columns((_("Where"), "w36"), (_("Assumed"), ""))
-    return blocks.Section([blocks.table(heads, shown), *([blocks.Paragraph(text, "small")] if left else [])])
+    return blocks.Section([blocks.table(heads, view.content.assumptions)])
 
 
 def build_references(view: View) -> blocks.Section:
@@ -282,11 +272,12 @@ PARTS = (
     Part(key="methods", heading=fill("Methods"), places={"annex": 50, "all": 130}, build=build_methods),
     Part(key="approach", heading=fill("How the chances were computed"), places={"client": 60, "all": 80},
          build=build_approach),
-    Part(key="assumptions", heading=fill("Assumptions and defaults"), places={"client": 80, "annex": 60, "all": 150},
-         build=build_assumptions,
-         is_shown=lambda view: view.edition != "annex" or len(view.content.assumptions) > MOST_ASSUMPTIONS),
+    Part(key="assumptions", heading=fill("Assumptions and defaults"), places={"annex": 60, "all": 150},
+         build=build_assumptions),
     Part(key="limits", heading=fill("Limits of the methods"), places={"client": 70, "all": 140},
-         build=lambda view: blocks.Section([blocks.Bullets(statements.list_limits(view.run), "")])),
+         build=lambda view: blocks.Section([
+             *view.list_texts("Limits"), blocks.Bullets(statements.list_limits(view.run), ""),
+         ])),
     Part(key="references", heading=fill("References"), places={"annex": 80, "all": 170}, build=build_references),
     Part(key="quality", heading=fill("Data-quality log"), places={"annex": 70, "all": 160}, build=build_quality),
     Part(key="appendix", heading=fill("Appendix"), places={"annex": 90, "all": 180}, build=build_appendix),

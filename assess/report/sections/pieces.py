@@ -1,20 +1,15 @@
-"""The pieces: identical ones grouped for a client, one a row, as lines of fixed columns, and by every method."""
+"""The pieces: one a row, as lines of fixed columns, and by every method."""
 
 import unicodedata
 from collections.abc import Sequence
-from itertools import groupby
 
-from assess.i18n import fill, gettext as _, ngettext, number
+from assess.i18n import fill, gettext as _, ngettext
 from assess.report import blocks, words
-from assess.report.page_columns import PageColumn, build_table, mark
+from assess.report.page_columns import PageColumn, build_table
 from assess.report.say.methods import find_disagreements
-from assess.report.say.piece import describe, find_kind, list_apart, list_risky
+from assess.report.say.piece import list_apart, list_risky
 from assess.report.view import MOST_ROWS, Part, View
-from assess.results import ItemResult, count_pieces
-from assess.text import natural_key
-
-MOST_GROUPS = 110
-"""Groups of identical pieces that the client's edition has room for."""
+from assess.results import ItemResult
 
 MOST_RISKY = 60
 """Risky pieces that stand in place of the whole table."""
@@ -22,62 +17,6 @@ MOST_REASONS = 15
 """Groups of disagreements that are shown."""
 MOST_LINES = 5000
 """Rows beyond which a PDF gets too long for anybody to read."""
-
-
-def build_groups(view: View) -> blocks.Section:
-    """Return the groups of identical pieces, floor by floor; of too many, those most likely to fall."""
-    groups: dict[tuple[object, ...], list[ItemResult]] = {}
-    for one in view.content.listed:
-        groups.setdefault((*find_kind(one), one.item.anchored, words.say_bracket(one)), []).append(one)
-    chosen = list(groups.values())
-    if len(chosen) > MOST_GROUPS:  # those most likely to fall, in their order
-        urgency = [(int(own[0].adopted.upper), max(one.adopted.probability for one in own)) for own in chosen]
-        worst = sorted(range(len(chosen)), key=lambda at: urgency[at], reverse=True)[:MOST_GROUPS]
-        chosen = [chosen[at] for at in sorted(worst)]
-    lead = [
-        ngettext("{n:,} row of the workbook; alike ones stand together.",
-                 "{n:,} rows of the workbook; alike ones stand together.", len(view.results)),
-        _("Alike are rows of the same floor, description, type, sizes, anchoring and class; the number of rows is in "
-          "brackets. The annex lists every piece."),
-        _("The {n:,} groups most likely to fall, of {all:,}, are shown.", n=len(chosen), all=len(groups))
-        if len(chosen) < len(groups) else "",
-    ]  # fmt: skip
-    anchored = _("Chance of an anchored piece: as if free-standing.") if view.content.total.anchored else ""
-    heads = blocks.list_columns(
-        (_("Items"), "w15"), (_("Room"), "w12"), (_("What"), ""),
-        (["B × W × H ", blocks.Span("[cm]", "unit")], "w15", "num"),
-        (_("No."), "w4", "num"), (_("Chance (range)"), "w24", "num"), (_("Class"), "w12"),
-    )  # fmt: skip
-    rows = []
-    for floor, own in groupby(chosen, key=lambda one: one[0].item.floor):
-        rows.append([blocks.part(view.floor_titles[floor], len(heads))])
-        for group in own:
-            first, names = group[0], words.name_pieces([one.item.item for one in group], 4, 16)
-            rooms = sorted({words.cut(one.item.room, 24) for one in group if one.item.room}, key=natural_key)
-            rows[-1].append(blocks.Row((
-                f"{names} ({len(group)})" if len(group) > 1 else names, words.name_first(rooms, 2) or words.DASH,
-                describe(first, 48), words.size(first), number(count_pieces(group), ",d"), say_chances(group),
-                mark(first),
-            )))  # fmt: skip
-    return blocks.Section([
-        blocks.Paragraph(blocks.join_words(lead)),
-        blocks.Paragraph(blocks.join_words([*view.legend, anchored]), "small"),
-        blocks.Table(heads, rows, "grouped", is_named=True),
-    ])  # fmt: skip
-
-
-def say_chances(group: Sequence[ItemResult]) -> str:
-    """Return the chance of grouped pieces with its interval; where rows differ, the range of both."""
-    texts = {words.chance(one) for one in group}
-    if len(texts) == 1:
-        return texts.pop()
-    chance = words.percents([one.adopted.probability for one in group])
-    lows = [one.adopted.low for one in group if one.adopted.low is not None]
-    highs = [one.adopted.high for one in group if one.adopted.high is not None]
-    if len(lows) < len(group) or len(highs) < len(group):
-        return chance
-    interval = f"({words.percents([min(lows), max(highs)])})".replace(" ", words.NO_BREAK)
-    return f"{chance} {interval}"
 
 
 def build_items(view: View) -> blocks.Section:
@@ -230,8 +169,6 @@ def _places(character: str) -> int:
 
 
 PARTS = (
-    Part(key="pieces", heading=fill("Pieces"), places={"client": 50}, build=build_groups,
-         is_shown=lambda view: bool(view.results)),
     Part(key="items", heading=fill("All pieces"), places={"annex": 110, "all": 50}, build=build_items),
     Part(key="comparison", heading=fill("Comparison of the methods"), places={"annex": 120, "all": 90},
          build=build_comparison),

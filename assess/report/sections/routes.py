@@ -11,7 +11,7 @@ from assess.report.view import Part, View, say_left
 from assess.route_results import BLOCKED_FROM, Chance, RoomRow, RouteRow, RouteState, SegmentRow
 from assess.text import natural_key
 
-MOST_LINES, MOST_FIXES, MOST_NAMES, LONGEST = 12, 10, 16, 20
+MOST_LINES, MOST_FIXES, MOST_NAMES, LONGEST = 10, 10, 8, 20
 """Lines of either table of the page, pieces and names of a line, and characters of the name of a piece."""
 MOST_ROUTES, MOST_ROOMS, MOST_BESIDE, MOST_STEPS = 100, 150, 300, 120
 """Rows of the tables that are shown, those most likely to be blocked; the Excel report holds all."""
@@ -36,8 +36,6 @@ class Line(NamedTuple):
 
 def build_page(view: View) -> blocks.Section:
     """Return the states in words, then a line for each way that is not open, by room and by route."""
-    if not view.run.has_routes:
-        return blocks.Section([blocks.Paragraph(_("The workbook names no routes."))], "run-on")
     found = view.run.route_tables
     uncounted = route.say_uncounted(found)
     limit = route.say_risk(found.risk)
@@ -57,6 +55,7 @@ def build_page(view: View) -> blocks.Section:
              "of a line.")  # fmt: skip
     return blocks.Section([
         blocks.Paragraph(" ".join(route.describe_routes(found)), "lead"),
+        *view.list_texts("Ways out"),
         *([blocks.Paragraph(uncounted)] if uncounted else []),
         blocks.Paragraph(legend, "legend states"),
         *([blocks.Heading(_("From each room to the street")),
@@ -135,13 +134,13 @@ def _name_few(places: Sequence[str]) -> str:
 def _say_fixes(view: View, one: RouteRow | RoomRow) -> blocks.Words:
     """Return the pieces to fix, rows of one piece each by the ends of their runs, and what else to do."""
     if one.missing:
-        return route.say_missing(one.missing) or words.DASH
+        return route.say_missing(one.missing, has_cells=False) or words.DASH
     if not one.is_fixed:
         advice = _("widen it, or move what stands inside; check the Clear width")
     elif one.state == RouteState.DOUBTFUL and not one.fixes:
         advice = _("no draw blocks it: simulate more draws to settle it")
     else:
-        advice = route.say_missing_after(one)
+        advice = route.say_missing_after(one, has_cells=False)
     if not one.fixes:
         return advice or words.DASH
     items = view.run.item_rows
@@ -424,7 +423,8 @@ def _list_beside(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block
 
 
 PARTS = (
-    Part(key="routes", heading=fill("Evacuation routes"), places={"client": 30, "all": 30}, build=build_page),
+    Part(key="routes", heading=fill("Evacuation routes"), places={"client": 30, "all": 30}, build=build_page,
+         is_shown=lambda view: view.run.has_routes),
     Part(key="routes_detail", heading=fill("Evacuation routes in detail"), places={"annex": 100, "all": 100},
          build=build_detail, is_shown=lambda view: view.run.has_routes),
 )  # fmt: skip

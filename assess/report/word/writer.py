@@ -12,7 +12,7 @@ from typing import Any
 
 import docx
 from docx.enum.style import WD_STYLE_TYPE
-from docx.enum.text import WD_ALIGN_PARAGRAPH, WD_TAB_ALIGNMENT
+from docx.enum.text import WD_ALIGN_PARAGRAPH, WD_TAB_ALIGNMENT, WD_TAB_LEADER
 from docx.oxml import OxmlElement
 from docx.oxml.ns import qn
 from docx.shared import Mm, Pt, RGBColor
@@ -37,21 +37,21 @@ FACE, FIXED = "Arial", "Courier New"
 """Faces that every word processor has, or replaces by one of the same widths."""
 HEAD, TEXT, QUIET, WARNING = "1F3A4D", "1C1C1C", "4A4F54", "8C1D3F"
 """Colours of headings, text, captions and cautions, as in the style sheets."""
-WIDTH, HEIGHT, SIDE, TOP = 210.0, 297.0, 22.0, 20.0
+WIDTH, HEIGHT, SIDE, TOP = 210.0, 297.0, 16.0, 18.0
 """The page and its margins [mm]."""
 SPACE = WIDTH - 2 * SIDE
 _STYLES = {
-    "Title": ("", 24, HEAD, True, 6), "Subtitle": ("", 12, QUIET, False, 6),
-    "Heading 1": ("", 16, HEAD, True, 6), "Heading 2": ("", 12.5, HEAD, True, 4),
-    "Heading 3": ("", 11, HEAD, True, 3), "Normal": ("", 10, TEXT, False, 6), "Caption": ("", 9, QUIET, False, 3),
-    "List Bullet": ("", 10, TEXT, False, 2), "List Number": ("", 10, TEXT, False, 2),
-    "Lead": ("Normal", 11, TEXT, None, 8), "Caution": ("Normal", 10, TEXT, None, 8),
-    "Small": ("Normal", 9, QUIET, None, 4), "Cell": ("Normal", 9, TEXT, None, 0),
-    "Cell Head": ("Cell", 9, HEAD, True, 0), "Listing": ("Normal", 7.5, TEXT, None, 0),
+    "Title": ("", 20, HEAD, True, 3), "Subtitle": ("", 9.5, QUIET, False, 2),
+    "Heading 1": ("", 16, HEAD, True, 4), "Heading 2": ("", 11.5, HEAD, True, 3),
+    "Heading 3": ("", 10, HEAD, True, 2), "Normal": ("", 9.5, TEXT, False, 4), "Caption": ("", 8.5, QUIET, False, 2),
+    "List Bullet": ("", 9.5, TEXT, False, 2), "List Number": ("", 9.5, TEXT, False, 2),
+    "Lead": ("Normal", 11, TEXT, None, 4), "Caution": ("Normal", 9.5, TEXT, None, 4),
+    "Small": ("Normal", 8.5, QUIET, None, 2), "Cell": ("Normal", 8, TEXT, None, 0),
+    "Cell Head": ("Cell", 8, HEAD, True, 0), "Listing": ("Normal", 7.5, TEXT, None, 0),
 }  # fmt: skip
 """Styles: what each is based on ("" of those that Word has), size [pt], colour, whether bold, space after [pt]."""
 _OF_KINDS = {"lead": "Lead", "caution": "Caution", "small": "Small", "legend": "Small", "note": "Small",
-             "kind": "Subtitle", "scenario": "Subtitle"}  # fmt: skip
+             "kind": "Subtitle", "scenario": "Subtitle", "band": "Small"}  # fmt: skip
 """Styles of paragraphs by their kind; the others are plain."""
 FILLS = {"anchored": (ANCHORED_FILL, INK), **{class_name(risk): (risk.fill, risk.ink) for risk in RiskClass}}
 """Ground and ink of badges and tiles, by their kind."""
@@ -59,9 +59,9 @@ LOGO, PHOTO = 40.0, 24.0
 """Widths of a logo and of a photo of a piece [mm]."""
 LEAST, MOST = 5.0, 34.0
 """Characters that the width of a column without one of its own is reckoned from."""
-CHARACTER, MARGINS = 2.05, 2.4
+CHARACTER, MARGINS = 1.85, 2.4
 """Width of a character of a cell and of the margins of one [mm]."""
-SIZE, SMALLEST = 9.0, 6.5
+SIZE, SMALLEST = 8.0, 6.5
 """Sizes of the letters of a cell [pt]: that of its style, and the least."""
 _OWN_WIDTH = re.compile(r"^w(\d+)$")
 _SPACES = re.compile(r"[ \t\r\n\f]+")
@@ -125,7 +125,8 @@ class WordWriter:
         self.write_blocks(document.cover)
         for section in document.sections:  # each on a new page unless it runs on
             if section.heading:
-                self._head(section.heading, 1, section.id, is_new="run-on" not in section.kind.split())
+                is_new = {"run-on", "decision"}.isdisjoint(section.kind.split())
+                self._head(section.heading, 1, section.id, is_new=is_new)
             self.write_blocks(section.blocks)
         pictures = draw_all([drawing for _run, drawing in self.drawn], style, self.progress)
         for (run, drawing), png in zip(self.drawn, pictures, strict=True):
@@ -222,19 +223,19 @@ class WordWriter:
         return paragraph
 
     def _contents(self, one: blocks.Contents) -> None:
-        """Write a field that Word fills with pages, which shows the headings until then."""
-        kinds = ("begin", "separate", "end")
-        begin, separate, end = (_make("w:r", {}, _make("w:fldChar", {"w:fldCharType": kind})) for kind in kinds)
-        self._paragraph("Subtitle", one.heading)
-        paragraph = self._add("Normal")
-        paragraph._p.extend((begin, _make_run("w:instrText", ' TOC \\o "1-1" \\h \\z '), separate))
-        for at, (line, _inner) in enumerate(one.lines):
-            paragraph = self._add("Normal") if at else paragraph
+        """Write a line for each heading, with a field for its page."""
+        self._paragraph("Heading 2", one.heading)
+        for line, _inner in one.lines:
+            paragraph = self._add("Normal")
             link = next(span for span in blocks.list_words(line) if isinstance(span, blocks.Span))
-            shown = _make_run("w:t", blocks.plain_words(line))
-            paragraph._p.append(_make("w:hyperlink", {"w:anchor": link.href[1:]}, shown))
+            paragraph._p.append(
+                _make("w:hyperlink", {"w:anchor": link.href[1:]}, _make_run("w:t", blocks.plain_words(line)))
+            )
+            paragraph.add_run("\t")
+            page = {"w:instr": f"PAGEREF {link.href[1:]} \\h", "w:dirty": "true"}
+            paragraph._p.append(_make("w:fldSimple", page, _make_run("w:t", "")))
+            paragraph.paragraph_format.tab_stops.add_tab_stop(Mm(SPACE), WD_TAB_ALIGNMENT.RIGHT, WD_TAB_LEADER.DOTS)
             paragraph.paragraph_format.space_after = 0
-        paragraph._p.append(end)
         if one.after:
             self._paragraph("Small", one.after)
 
@@ -247,7 +248,8 @@ class WordWriter:
     def _inline(self, paragraph: Any, one: blocks.Inline, look: Look) -> None:
         match one:
             case str():
-                text = _SPACES.sub(NO_BREAK if look.ground else " ", plain_text(one))
+                text = _SPACES.sub(" ", plain_text(one))
+                text = text.replace(" ", NO_BREAK, 1) if look.ground else text  # a sign stays with its word
                 if not text:
                     return
                 run = paragraph.add_run(text)
@@ -350,6 +352,8 @@ def _set_styles(file: Any, language: str) -> None:
             style.font.italic = False
         style.font.name, style.font.size, style.font.color.rgb = FACE, Pt(size), RGBColor.from_string(colour)
         style.font.bold = is_bold
+        for spacing in style.element.get_or_add_rPr().findall(qn("w:spacing")):
+            spacing.getparent().remove(spacing)
         fonts = style.element.get_or_add_rPr().get_or_add_rFonts()
         for key in list(fonts.attrib):
             if key.endswith("Theme"):

@@ -18,7 +18,6 @@ from assess.report.content import Content
 from assess.report.say import route
 from assess.report.say.ground import say_ground
 from assess.report.say.simulation import INTERVAL, say_scenario
-from assess.report.sections.summary import ROUTES
 from assess.report.xlsx import charts
 from assess.report.xlsx.item_formulas import AT_RUN, literal, sentence
 from assess.report.xlsx.items_sheet import (
@@ -70,6 +69,10 @@ class _Plan:
     def total(self, basis: str) -> int:
         """Row of the sums of a table by floor."""
         return self.tables[basis] + 2 + len(self.content.floors)
+
+
+ROUTES = 4
+"""Routes that the sheet has room for."""
 
 
 def write_summary(pen: Pen, page: Any, content: Content) -> None:
