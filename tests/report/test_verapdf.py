@@ -85,7 +85,7 @@ def _write(results, path, *, accessible=False, language="en", edition="client"):
 
 
 def _strange(folder):
-    """The client's edition, and the annex as an accessible one: in Italian, with signs that fonts lack and pictures."""
+    """The client's edition and work orders, and the annex and work orders as accessible ones: in Italian, with signs that fonts lack and pictures."""
     (folder / "p.png").write_bytes(picture("PNG", "RGBA", (1600, 1200)))
     floors = [{"floor": "1", "pfa_x": 0.4, "plan": "p.png", "plan_left": 0, "plan_bottom": 0, "plan_width": 16}]
     results = assessed(folder / "表.xlsx", JAPANESE, floors, building="東京", organisation="Us & Co", logo="p.png")
@@ -93,6 +93,8 @@ def _strange(folder):
     return [
         (_write(results, folder / "client.pdf", language="it"), "3u"),
         (_write(results, folder / "annex.pdf", accessible=True, language="it", edition="annex"), "ua1"),
+        (_write(results, folder / "work.pdf", edition="work"), "3u"),
+        (_write(results, folder / "work-ua.pdf", accessible=True, language="it", edition="work"), "ua1"),
     ]
 
 
@@ -112,6 +114,6 @@ def test_reports_are_valid_and_the_validator_can_say_no(tmp_path, jars):
     plain = tmp_path / "plain.pdf"
     weasyprint.HTML(string="<h1>Plain</h1>").write_pdf(plain)
     *found, archival_as_accessible, plain_as_archival = _validate(jars, *good, (strange[0][0], "ua1"), (plain, "3u"))
-    assert found == [""] * 4
+    assert found == [""] * 6
     assert re.search(r"^  5 test 1: .*PDF/UA", archival_as_accessible)
     assert "6.6" in plain_as_archival
