@@ -57,8 +57,8 @@ def test_ratings_follow_class_importance_and_routes(results):
     level = "LMHH"[max(one.adopted.risk, one.adopted.upper)]
     assert ratings["LS"] == level
     assert ratings["PL"] == {"H": "M", "M": "L", "L": "L"}[level]
-    assert [find_priority(dict(zip(("LS", "PL", "FL"), text, strict=True))) for text in ("HLL", "LLH", "LML", "LLL")] == [
-        1, 2, 3, 4]  # fmt: skip
+    for at, text in enumerate(("HLL", "LLH", "LML", "LLL"), 1):
+        assert find_priority(dict(zip(("LS", "PL", "FL"), text, strict=True))) == at
 
 
 def test_the_checklist_is_answered_where_the_workbook_tells_and_only_there(book, tmp_path):

@@ -85,7 +85,7 @@ def _write(results, path, *, accessible=False, language="en", edition="client"):
 
 
 def _strange(folder):
-    """The client's edition and work orders, and the annex and work orders as accessible ones: in Italian, with signs that fonts lack and pictures."""
+    """Editions for archives and for screen readers: in Italian, with signs that fonts lack and pictures."""
     (folder / "p.png").write_bytes(picture("PNG", "RGBA", (1600, 1200)))
     floors = [{"floor": "1", "pfa_x": 0.4, "plan": "p.png", "plan_left": 0, "plan_bottom": 0, "plan_width": 16}]
     results = assessed(folder / "表.xlsx", JAPANESE, floors, building="東京", organisation="Us & Co", logo="p.png")

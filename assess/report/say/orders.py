@@ -3,7 +3,8 @@
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import groupby, repeat
+from typing import NamedTuple
 
 from assess.details import CHECK, DETAILS
 from assess.i18n import fill, gettext as _, number
@@ -44,11 +45,6 @@ class Line:
         """Its phase in short."""
         return self.phase or _("check")
 
-    @property
-    def has_least(self) -> bool:
-        """Whether its number of fixings is the least, as no capacity of one is printed."""
-        return self.work.row.is_least
-
     def count_fixings(self, *, in_all: bool = False) -> int:
         """Return the fixings that one piece, or all, need; none of an anchor that is only checked."""
         row = self.work.row
@@ -56,7 +52,7 @@ class Line:
 
     def say_fixings(self, *, in_all: bool = False) -> str:
         """Return the fixings of one piece, or of all, with a mark where they are the least; a dash for none."""
-        return mark_fixings(self.count_fixings(in_all=in_all), is_least=self.has_least)
+        return mark_fixings(self.count_fixings(in_all=in_all), is_least=self.work.row.is_least)
 
     def say_pull(self) -> str:
         """Return what one fixing carries, in the reader's units; "none" where the weight of the piece does."""
@@ -84,23 +80,17 @@ def mark_fixings(fixings: int, *, is_least: bool) -> str:
     return f"{number(fixings, ',d')}{say_work.LEAST if is_least else ''}" if fixings else words.DASH
 
 
-@dataclass(frozen=True, slots=True)
-class RoomOrder:
-    """The lines of one room; `title` names floor and room."""
+class RoomOrder(NamedTuple):
+    """The lines of one room; `title` names floor and room, `pieces` is how many are worked on."""
 
     floor: str
     room: str
     title: str
     lines: Sequence[Line]
-
-    @property
-    def pieces(self) -> int:
-        """Pieces that are worked on."""
-        return sum(one.work.row.pieces for one in self.lines)
+    pieces: int
 
 
-@dataclass(frozen=True, slots=True)
-class Sticker:
+class Sticker(NamedTuple):
     """A sticker of one piece; `text` is what its QR code says: no address, as it must do without a network."""
 
     result: ItemResult
@@ -130,25 +120,22 @@ def say_phases(lines: Iterable[Line]) -> list[str]:
 
 def list_orders(content: Content) -> list[RoomOrder]:
     """Return the rooms in which something is to be done: now, with the next works, or to be checked."""
-    titles = {one.floor.floor: one.title for one in content.floors}
+    titles, nowhere, found = {one.floor.floor: one.title for one in content.floors}, _("no room given"), []
     ordered = (one for one in list_lines(content) if one.phase != "C")
-    nowhere = _("no room given")
-    return [
-        RoomOrder(floor, room, f"{titles[floor]}: {words.cut(room, 60) or nowhere}", tuple(own))
-        for (floor, room), own in groupby(ordered, key=lambda one: (one.work.row.floor, one.work.row.room))
-    ]
+    for (floor, room), own in groupby(ordered, key=lambda one: (one.work.row.floor, one.work.row.room)):
+        lines, title = tuple(own), f"{titles[floor]}: {words.cut(room, 60) or nowhere}"
+        found.append(RoomOrder(floor, room, title, lines, sum(one.work.row.pieces for one in lines)))
+    return found
 
 
 def list_stickers(orders: Iterable[RoomOrder], title: str) -> Iterator[Sticker]:
     """Yield a sticker for each piece of some rooms; `title` is that of the building."""
     building = words.cut(title, SHORT)
-    for order in orders:
-        for line in order.lines:
-            for one in line.work.results:
-                parts = (one.item.item, order.room, line.title, building)
-                text = " | ".join(" ".join(part.split()) for part in parts if part)
-                for _copy in range(one.item.quantity):
-                    yield Sticker(one, order.room, line.title, text)
+    for order, line in ((each, line) for each in orders for line in each.lines):
+        for one in line.work.results:
+            parts = (one.item.item, order.room, line.title, building)
+            text = " | ".join(" ".join(part.split()) for part in parts if part)
+            yield from repeat(Sticker(one, order.room, line.title, text), one.item.quantity)
 
 
 def list_material(lines: Iterable[Line]) -> list[tuple[str, int, str]]:
@@ -157,5 +144,5 @@ def list_material(lines: Iterable[Line]) -> list[tuple[str, int, str]]:
     for one in lines:
         pieces[one.work.row.detail] += one.work.row.pieces
         fixings[one.work.row.detail] += one.count_fixings(in_all=True)
-        least |= {one.work.row.detail} if one.has_least else set()
+        least |= {one.work.row.detail} if one.work.row.is_least else set()
     return [(key, pieces[key], mark_fixings(fixings[key], is_least=key in least)) for key in DETAILS if key in pieces]

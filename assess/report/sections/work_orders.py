@@ -1,6 +1,6 @@
 """Work orders: what to bring, a page a room with its plan, its lines and how each is done, and stickers."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import islice
 
 from assess.details import DETAILS, WHO
@@ -125,24 +125,16 @@ def build_stickers(view: View) -> blocks.Section:
     """Return sheets of stickers, in the order of the pages."""
     orders = say.list_orders(view.content)[:MOST_ROOMS]
     stickers = list(islice(say.list_stickers(orders, view.content.title), MOST_STICKERS))
-    sheets = [stickers[at : at + A_SHEET] for at in range(0, len(stickers), A_SHEET)]
-    drawn: dict[str, str] = {}
-    return blocks.Section([blocks.Box(list(_list_labels(sheet, drawn)), "sheet") for sheet in sheets], "stickers")
+    drawn = {text: blocks.Figure(blocks.Image(draw_code(text))) for text in dict.fromkeys(one.text for one in stickers)}
+    labels = [blocks.Box([drawn[one.text], _say_label(one)], "sticker") for one in stickers]
+    sheets = [blocks.Box(labels[at : at + A_SHEET], "sheet") for at in range(0, len(labels), A_SHEET)]
+    return blocks.Section(sheets, "stickers")
 
 
-def _list_labels(sheet: Sequence[Sticker], drawn: dict[str, str]) -> Iterator[blocks.Box]:
-    for one in sheet:
-        if one.text not in drawn:
-            drawn[one.text] = draw_code(one.text)
-        item = one.result.item
-        lines: blocks.Runs = [
-            blocks.strong(words.cut(item.item, 24)),
-            blocks.BREAK,
-            words.cut(one.room or item.floor, 40),
-        ]
-        yield blocks.Box(
-            [blocks.Figure(blocks.Image(drawn[one.text])),
-             blocks.Paragraph([*lines, blocks.BREAK, words.cut(one.detail, 40)])], "sticker")  # fmt: skip
+def _say_label(one: Sticker) -> blocks.Paragraph:
+    item = one.result.item
+    texts = blocks.strong(words.cut(item.item, 24)), words.cut(one.room or item.floor, 40), words.cut(one.detail, 40)
+    return blocks.Paragraph([texts[0], blocks.BREAK, texts[1], blocks.BREAK, texts[2]])
 
 
 PARTS = (

@@ -7,9 +7,9 @@ Tokyo Fire Department. Handbook on measures against the overturning, falling and
 items for offices, as reprinted at jecom.jp/annzen/selfcheck.html. Items are given here in our own words.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 from assess.details import DETAILS
 from assess.i18n import LANGUAGES, Text, fill, gettext as _, load_catalogue
@@ -18,15 +18,15 @@ from assess.report.content import Content
 from assess.report.say import work as say_work
 from assess.report.say.orders import list_lines
 from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines
-from assess.results import ItemResult, count_pieces
+from assess.results import ROLLS, ItemResult, ItemRow, count_pieces
 from assess.risk import RiskClass
 from assess.text import natural_key
 from assess.workbook.names import key
 
 TALL = 150.0
 """Height [cm] from which a piece counts as tall, assumed: the checklist gives none."""
-RATINGS = ("L", "M", "H")
-_CONCERNS = {"life safety": fill("LS"), "property": fill("PL"), "function": fill("FL")}
+CONCERNS = {"LS": "life safety", "PL": "property", "FL": "function"}
+"""FEMA E-74's ratings by the word of Importance that names each."""
 E74_RULE = fill(
     "LS (life safety), PL (property loss) and FL (functional loss) are derived, not judged on the spot: H where the "
     "upper class is high or very high, M where it is medium, L where it is low; one step lower where Importance does "
@@ -37,12 +37,12 @@ E74_RULE = fill(
 
 
 def rate(one: ItemResult) -> dict[str, str]:
-    """Return the ratings of a piece by FEMA E-74's concerns, which `E74_RULE` derives; "" of one that rolls."""
-    if one.apart == "rolls":
-        return dict.fromkeys(_CONCERNS.values(), "")
+    """Return the ratings of a piece, which `E74_RULE` derives; a dash of one that rolls."""
+    if one.apart == ROLLS:
+        return dict.fromkeys(CONCERNS, words.DASH)
     level = 0 if one.is_anchored else min(max(one.adopted.risk, one.adopted.upper), RiskClass.HIGH)
-    named = {_CONCERNS.get(one.item.importance, ""), "LS" if one.routes else ""}
-    return {name: RATINGS[level if name in named else max(level - 1, 0)] for name in _CONCERNS.values()}
+    named = {name for name, word in CONCERNS.items() if word == one.item.importance or (name == "LS" and one.routes)}
+    return {name: "LMH"[level if name in named else max(level - 1, 0)] for name in CONCERNS}
 
 
 def find_priority(ratings: Mapping[str, str]) -> int:
@@ -50,53 +50,43 @@ def find_priority(ratings: Mapping[str, str]) -> int:
     return 1 if ratings["LS"] == "H" else 2 if "H" in ratings.values() else 3 if "M" in ratings.values() else 4
 
 
-class _Alike(NamedTuple):
-    """Alike pieces of a room, a line of the form."""
-
-    results: Sequence[ItemResult]
-    ratings: Mapping[str, str]
-    detail: str
-
-    @property
-    def notes(self) -> str:
-        first = self.results[0]
-        texts = [_("check anchor")] if first.is_anchored else []
-        texts += [_("rolls: not covered")] if first.apart == "rolls" else []
-        texts += [_("unconfirmed")] if first.apart == "unconfirmed" else []
-        photos = dict.fromkeys(str(one.item.field("photo")) for one in self.results if one.item.field("photo"))
-        return "; ".join((*texts, *([_("photo {names}", names=", ".join(photos))] if photos else [])))
-
-
-def _say_rating(name: str, row: _Alike) -> str:
-    return row.ratings[name] or words.DASH
-
-
 def write_e74(pen: Pen, page: Any, content: Content) -> None:
     """Write the inventory form, a line for alike pieces, the most urgent first."""
-    details = {
-        at: line.work.row.detail for line in list_lines(content) for at in line.work.row.item_indices
-    }  # fmt: skip
+    details = {at: line.work.row.detail for line in list_lines(content) for at in line.work.row.item_indices}
     groups: dict[tuple[Any, ...], list[ItemResult]] = {}
     for one in content.listed:
         item = one.item
-        alike = (item.floor, item.room, item.description or item.type, words.size(one), one.is_anchored, one.apart,
-                 details.get(item.index, ""), *rate(one).values())  # fmt: skip
+        alike = (find_priority(rate(one)), item.floor, item.room, item.description or item.type, words.size(one),
+                 one.is_anchored, one.apart, details.get(item.index, ""), *rate(one).values())  # fmt: skip
         groups.setdefault(alike, []).append(one)
-    rows = [_Alike(own, rate(own[0]), details.get(own[0].item.index, "")) for own in groups.values()]
-    rows.sort(key=lambda row: find_priority(row.ratings))
+    rows = [own for _alike, own in sorted(groups.items(), key=lambda pair: pair[0][0])]
+
+    def say_item(own: Sequence[ItemResult]) -> str:
+        names = say_work.join_names(say_work.shorten_names(one.item.item for one in own))
+        return ": ".join(filter(None, (own[0].item.description or own[0].item.type, names)))
+
+    def say_who(own: Sequence[ItemResult]) -> str:
+        return DETAILS[details[own[0].item.index]].who if own[0].item.index in details else words.DASH
+
     columns = [
-        Column(_("Priority"), 8, lambda row: find_priority(row.ratings), align="center"),
-        Column(_("Item"), 44, lambda row: ": ".join(filter(None, (
-            row.results[0].item.description or row.results[0].item.type,
-            say_work.join_names(say_work.shorten_names(one.item.item for one in row.results)))))),
-        Column(_("Location"), 28, lambda row: ", ".join(filter(None, (row.results[0].item.floor,
-                                                                      row.results[0].item.room)))),
-        Column(_("Quantity"), 9, lambda row: count_pieces(row.results), COUNT),
-        *(Column(_(name), 6, partial(_say_rating, name)) for name in _CONCERNS.values()),
-        Column(_("NE / PR / ER"), 9, lambda row: DETAILS[row.detail].who if row.detail else words.DASH),
-        Column(_("Notes (photo)"), 40, lambda row: row.notes),
+        Column(_("Priority"), 8, lambda own: find_priority(rate(own[0])), align="center"),
+        Column(_("Item"), 44, say_item),
+        Column(_("Location"), 28, lambda own: ", ".join(filter(None, (own[0].item.floor, own[0].item.room)))),
+        Column(_("Quantity"), 9, count_pieces, COUNT),
+        *(Column(label, 6, partial(lambda name, own: rate(own[0])[name], name))
+          for name, label in zip(CONCERNS, (_("LS"), _("PL"), _("FL")), strict=True)),
+        Column(_("NE / PR / ER"), 9, say_who),
+        Column(_("Notes (photo)"), 40, _say_notes),
     ]  # fmt: skip
     _write_form(pen, page, _(E74_RULE), columns, rows)
+
+
+def _say_notes(own: Sequence[ItemResult]) -> str:
+    first = own[0]
+    texts = [_("check anchor")] if first.is_anchored else []
+    texts += [_(words.BASES[first.apart])] if first.apart in (ROLLS, "unconfirmed") else []
+    photos = dict.fromkeys(str(one.item.field("photo")) for one in own if one.item.field("photo"))
+    return "; ".join((*texts, *([_("photo {names}", names=", ".join(photos))] if photos else [])))
 
 
 def _write_form(pen: Pen, page: Any, rule: str, columns: Sequence[Column], rows: Sequence[Any]) -> None:
@@ -111,82 +101,80 @@ def _write_form(pen: Pen, page: Any, rule: str, columns: Sequence[Column], rows:
 
 Answer = tuple[str, Sequence[str]]
 """``yes``, ``no`` or "" for not known, and the pieces that say so."""
+NOT_KNOWN: Answer = "", ()
 
 
-def _held(pieces: Iterable[ItemResult], *, at_all: bool = True) -> Answer:
-    """Return yes if all of some pieces are held, no if one is not; not known where there is none, or none is told."""
-    own = list(pieces)
+def _held(content: Content, which: Callable[[ItemRow], Any], *, tells_all: bool = True) -> Answer:
+    """Return no if one of some pieces is loose, yes if all are held and that `tells_all`; else it is not known."""
+    own = [one for one in content.results if which(one.item)]
     loose = [one.item.item for one in own if one.item.anchored in ("no", "partly") and not one.is_anchored]
-    if loose:
-        return "no", loose
-    return ("yes", ()) if own and at_all and all(one.is_anchored for one in own) else ("", ())
+    if loose or not (own and tells_all):
+        return ("no", loose) if loose else NOT_KNOWN
+    return ("yes", ()) if all(one.is_anchored for one in own) else NOT_KNOWN
 
 
-def _is_type(one: ItemResult, name: str) -> bool:
-    return key(one.item.type) in {key(load_catalogue(code).find(name)) for code in LANGUAGES}
+def _is_type(item: ItemRow, name: str) -> bool:
+    return key(item.type) in {key(load_catalogue(code).find(name)) for code in LANGUAGES}
 
 
 def _in_the_way(content: Content, *, falls: bool) -> Answer:
     """Return whether pieces stand in a segment of a route, or may fall into one."""
-    routes, rows = content.run.route_tables, content.results
-    near = [one for segment in routes.segments if segment.evaluated for one in segment.pieces]
-    if not any(segment.evaluated for segment in routes.segments):
-        return "", ()
-    found = {
-        one.item for one in near
-        if (not rows[one.item_index].is_anchored and rows[one.item_index].adopted.risk >= RiskClass.MEDIUM
-            if falls else one.distance_m < 0)
-    }  # fmt: skip
+    near = [one for segment in content.run.route_tables.segments if segment.evaluated for one in segment.pieces]
+    if not any(segment.evaluated for segment in content.run.route_tables.segments):
+        return NOT_KNOWN
+    found = set()
+    for one in near:
+        piece = content.results[one.item_index]
+        risky = not piece.is_anchored and piece.adopted.risk >= RiskClass.MEDIUM
+        found |= {one.item} if (risky if falls else one.distance_m < 0) else set()
     return ("no", sorted(found, key=natural_key)) if found else ("yes", ())
 
 
-def _unknown(_content: Content) -> Answer:
-    return "", ()
+def _top_heavy(content: Content) -> Answer:
+    heavy = [one.item.item for one in content.results if one.item.centre_of_gravity > 0.5]
+    return ("no", heavy) if heavy else NOT_KNOWN
 
 
-TOKYO: Sequence[tuple[Text, Callable[[Content], Answer]]] = (
-    (fill("No tall piece stands by itself."), lambda content: _held(
-        one for one in content.results if one.item.height_cm >= TALL)),
-    (fill("Unstable pieces are joined back to back."), _unknown),
-    (fill("Storage along walls is fixed to the wall or the floor."), lambda content: _held(
-        one for one in content.results if one.item.against_wall)),
-    (fill("Of pieces of two parts the upper is joined to the lower."), _unknown),
-    (fill("Low partitions stand in a U or an H and are fixed to the floor."), lambda content: _held(
-        (one for one in content.results if _is_type(one, "Partition screen")), at_all=False)),
-    (fill("Office machines cannot fall from where they stand."), _unknown),
-    (fill("Drawers and doors cannot open by themselves."), _unknown),
-    (fill("Clocks, frames and notice boards cannot come down."), _unknown),
-    (fill("Glass has a film that holds its splinters."), _unknown),
-    (fill("Nothing on the floor makes people stumble."), _unknown),
-    (fill("Nothing is left in the ways out."), lambda content: _in_the_way(content, falls=False)),
-    (fill("Nothing along the ways out is likely to overturn."), lambda content: _in_the_way(content, falls=True)),
-    (fill("Emergency exits are easy to see."), _unknown),
-    (fill("Openings for the fire brigade are free."), _unknown),
-    (fill("Nothing stands on top of furniture."), _unknown),
-    (fill("What pieces hold does not stick out or make them top-heavy."), lambda content: (
-        ("no", heavy) if (heavy := [one.item.item for one in content.results if one.item.centre_of_gravity > 0.5])
-        else ("", ()))),
-    (fill("Nothing dangerous is stored, such as chemicals or what burns."), _unknown),
-    (fill("Nothing is kept under desks."), _unknown),
-    (fill("Drawers and doors are kept shut."), _unknown),
-    (fill("Nothing that may overturn stands in front of windows."), _unknown),
-    (fill("Copiers are held against overturning and moving."), lambda content: _held(
-        one for one in content.results if _is_type(one, "Photocopier"))),
-)  # fmt: skip
-"""The items in our own words, each with what the workbook tells of it."""
+TOKYO: Mapping[Text, Callable[[Content], Answer] | None] = {
+    fill("No tall piece stands by itself."): lambda content: _held(content, lambda one: one.height_cm >= TALL),
+    fill("Unstable pieces are joined back to back."): None,
+    fill("Storage along walls is fixed to the wall or the floor."): lambda content: _held(
+        content, lambda one: one.against_wall),
+    fill("Of pieces of two parts the upper is joined to the lower."): None,
+    fill("Low partitions stand in a U or an H and are fixed to the floor."): lambda content: _held(
+        content, lambda one: _is_type(one, "Partition screen"), tells_all=False),
+    fill("Office machines cannot fall from where they stand."): None,
+    fill("Drawers and doors cannot open by themselves."): None,
+    fill("Clocks, frames and notice boards cannot come down."): None,
+    fill("Glass has a film that holds its splinters."): None,
+    fill("Nothing on the floor makes people stumble."): None,
+    fill("Nothing is left in the ways out."): partial(_in_the_way, falls=False),
+    fill("Nothing along the ways out is likely to overturn."): partial(_in_the_way, falls=True),
+    fill("Emergency exits are easy to see."): None,
+    fill("Openings for the fire brigade are free."): None,
+    fill("Nothing stands on top of furniture."): None,
+    fill("What pieces hold does not stick out or make them top-heavy."): _top_heavy,
+    fill("Nothing dangerous is stored, such as chemicals or what burns."): None,
+    fill("Nothing is kept under desks."): None,
+    fill("Drawers and doors are kept shut."): None,
+    fill("Nothing that may overturn stands in front of windows."): None,
+    fill("Copiers are held against overturning and moving."): lambda content: _held(
+        content, lambda one: _is_type(one, "Photocopier")),
+}  # fmt: skip
+"""The items in our own words, each with what the workbook tells of it; None: nothing."""
 
 
 def write_tokyo(pen: Pen, page: Any, content: Content) -> None:
     """Write the checklist, answered where the workbook can tell."""
-    rows = [(at, _(text), *answer(content)) for at, (text, answer) in enumerate(TOKYO, 1)]
+    answers = [answer(content) if answer else NOT_KNOWN for answer in TOKYO.values()]
     columns = [
         Column(_("No."), 5, lambda row: row[0], align="center"),
-        Column(_("Item"), 60, lambda row: row[1]),
-        Column(_("Answer"), 16, lambda row: _(row[2]) if row[2] else _("not known: look")),
-        Column(_("Rows"), 60, lambda row: words.name_pieces(row[3], 30)),
+        Column(_("Item"), 60, lambda row: _(row[1])),
+        Column(_("Answer"), 16, lambda row: _(row[2][0]) if row[2][0] else _("not known: look")),
+        Column(_("Rows"), 60, lambda row: words.name_pieces(row[2][1], 30)),
         Column(_("Seen by, date"), 24, lambda _row: ""),
-    ]  # fmt: skip
+    ]
     rule = _("The items are those of the Tokyo Fire Department's checklist for offices, in our own words; they are "
              "answered from the workbook where that can tell. yes: as it should be, as far as the workbook lists the "
              "furniture; no: see the rows; not known: look. Tall: from {tall:g} cm, assumed.", tall=TALL)  # fmt: skip
-    _write_form(pen, page, rule, columns, rows)
+    _write_form(pen, page, rule, columns, list(zip(range(1, len(TOKYO) + 1), TOKYO, answers, strict=True)))

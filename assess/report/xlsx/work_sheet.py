@@ -59,8 +59,8 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
         values = [one.read(line) for one in columns]
         page.set_row(row, row_height(values, widths))
         for place, (column, value) in enumerate(zip(columns, values, strict=True)):
-            code = f'{column.format}"{say_work.LEAST}"' if line.has_least and "fixings" in column.key else column.format
-            style = pen.style("text", code, bottom=4, align=column.align)
+            mark = f'"{say_work.LEAST}"' if line.work.row.is_least and "fixings" in column.key else ""
+            style = pen.style("text", f"{column.format}{mark}", bottom=4, align=column.align)
             if column.key == "cost":
                 unit = xl_rowcol_to_cell(row, at["unit_cost"])
                 each = f"*{line.work.row.fixings}" if line.work.row.cost_per == "fixing" else ""
