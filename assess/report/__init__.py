@@ -22,6 +22,7 @@ from assess.delivery.folders import NEW
 from assess.errors import InputError, OutputError, PdfUnavailableError
 from assess.i18n import fill
 from assess.progress import SILENT, Progress
+from assess.report.measures import reading
 from assess.report.ownership import DATA, find_reports, seal
 from assess.report.report_options import ReportOptions
 from assess.report_formats import ALL, DEFAULT, FILES, FORMATS, Job
@@ -71,7 +72,7 @@ def write_reports(
     wanted = {*formats, "json"}
     ordered = [name for name in FILES if name in wanted - set(_LAST)] + [name for name in _LAST if name in wanted]
     try:
-        with stage_for(folder) as stage, options.spoken():
+        with stage_for(folder) as stage, options.spoken(), reading(results.building.report_units):
             job = Job(results, options, progress, stage / NEW)
             missing = _write_all(job, folder, ordered)
             gone = deliver(stage, folder, lambda target: _find_old(target, [*job.listed, DATA]), DATA, progress)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from assess.fields import MOTION_FIELDS, item_fields, route_fields
 from assess.i18n import gettext as _, number
-from assess.report import words
+from assess.report import measures, words
 from assess.report.blocks import Cell, Column, Runs, Span, Table, Words, join_words, note, table
 from assess.report.say.ground import describe_origin, describe_source
 from assess.report.say.piece import describe
@@ -79,7 +79,8 @@ def build_table(columns: Sequence[PageColumn], rows: Iterable[Any], kind: str, c
 def of_field(field: Field, **more: Any) -> PageColumn:
     """Return the column of a field of the results; `more` are parameters of `PageColumn` that differ."""
     is_number = field.kind in NUMBERS
-    column = PageColumn(field.key, field.short_heading(), lambda row: format_value(field, field.read(row)), is_number,
+    heading = field.short_heading().replace(f"[{field.unit}]", f"[{measures.unit(field.unit)}]")
+    column = PageColumn(field.key, heading, lambda row: format_value(field, field.read(row)), is_number,
                         sort=field.read if is_number else None)  # fmt: skip
     return replace(column, **more)
 
@@ -93,8 +94,9 @@ def format_value(field: Field, value: Any) -> str:
     if field.kind == "count":
         return number(value, ",d")
     if field.unit in ("m", "cm"):
-        return (words.in_m if field.unit == "m" else words.in_cm)(value)
+        return measures.show(value, field.unit)
     if field.kind == "number":
+        value = measures.convert(value, field.unit)
         return words.fixed(value, len(field.format.partition(".")[2].rstrip("%")) if field.format else 1)
     if field.kind == "flag":
         return words.yes_or_no(value)

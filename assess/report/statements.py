@@ -86,8 +86,6 @@ def list_assumptions(results: Results) -> Lines:
         *((_(title), text) for title, text in constants.items()),
         (_("Gravity"), f"{number(GRAVITY)} m/s²"),
         (_("A class limit belongs to"), _("the higher class (the paper leaves this open)")),
-        (_("Units"), _("Lengths are in cm and m, accelerations in g, velocities in cm/s, whatever the workbook's units "
-                       "are.")),
     ]  # fmt: skip
 
 

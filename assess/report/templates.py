@@ -11,7 +11,7 @@ from typing import Any
 from assess.errors import InputError
 from assess.i18n import markup, nmarkup
 from assess.progress import SILENT, Progress
-from assess.report import words
+from assess.report import measures, words
 from assess.report.report_options import ReportOptions
 
 LONGEST_WORD = 18
@@ -81,6 +81,7 @@ def _environment(own: Path | None, folders: tuple[Path, ...]) -> Any:
         lstrip_blocks=True, optimized=False,  # what is compiled holds no text, so that all languages share it
     )  # fmt: skip
     environment.globals |= {"_": markup, "ngettext": nmarkup}
+    environment.globals |= {"unit": measures.unit}
     environment.filters |= {"cut": words.cut, "in_m": words.in_m, "breakable": break_words}
     return environment
 

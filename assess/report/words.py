@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from assess.i18n import Text, fill, gettext as _, ngettext, number
 from assess.model import SCANNED
+from assess.report import measures
 from assess.results import CANNOT_ROCK, ROLLS, ItemResult
 from assess.risk import LIMITS, RiskClass, classify
 from assess.workbook.draft_names import is_draft
@@ -182,17 +183,17 @@ def in_g(value: float | None) -> str:
 
 
 def in_cm(value: float | None) -> str:
-    """Return a length [cm], with one decimal at most, without zeros at its end, and never as -0."""
-    return DASH if value is None else number(round(value, 1) + 0.0, ".12g")
+    """Return a length [cm] in the reader's unit, in or cm, with one decimal at most."""
+    return DASH if value is None else measures.show(value, "cm")
 
 
 def in_m(value: float | None) -> str:
-    """Return a length [m], with two decimals at most, as `in_cm`."""
-    return DASH if value is None else number(round(value, 2) + 0.0, ".12g")
+    """Return a length [m] in the reader's unit, ft or m, with two decimals at most."""
+    return DASH if value is None else measures.show(value, "m")
 
 
 def size(one: ItemResult) -> str:
-    """Return breadth, width and height [cm]; of a piece whose width is not known the two that are, by name."""
+    """Return breadth, width and height in the reader's unit; of a piece whose width is not known the two that are, by name."""
     if one.item.width_cm is None:
         return _("B {breadth}, H {height}", breadth=in_cm(one.item.breadth_cm), height=in_cm(one.item.height_cm))
     return " × ".join(in_cm(side) for side in (one.item.breadth_cm, one.item.width_cm, one.item.height_cm))
@@ -284,8 +285,8 @@ def list_remarks(one: ItemResult) -> list[str]:
     sliding, one_sided = one.governing.sliding, one.governing.one_sided
     texts = [say_scanned(one)]
     if sliding is not None and sliding.slip_median_cm is not None and (sliding.slip_84_cm or 0.0) >= LEAST_SLIP:
-        texts.append(_("slides up to {median} cm (median), {high} cm (84 %)",
-                       median=fixed(sliding.slip_median_cm, 0), high=fixed(sliding.slip_84_cm, 0)))  # fmt: skip
+        median, high = (measures.say(round(one or 0.0), "cm") for one in (sliding.slip_median_cm, sliding.slip_84_cm))
+        texts.append(_("slides up to {median} (median), {high} (84 %)", median=median, high=high))
     if one_sided is not None:
         texts.append(_("with the wall at its back {chance}", chance=percent(one_sided)))
     return list(filter(None, (*texts, say_bracket(one))))

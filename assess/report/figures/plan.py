@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from assess.i18n import gettext as _
 from assess.plans.linework import clip
-from assess.report import words
+from assess.report import measures, words
 from assess.report.content import FloorPage
 from assess.report.figures.labels import MOST, NAMED, Bounds, Corners, Key, Label, Names, Point, Spot, bounds
 from assess.report.figures.underlay import Ring, Room, Underlay, build_underlay, cut_falls, find_edge, list_rooms, widen
@@ -128,17 +128,17 @@ class Plan:
 
     @property
     def ticks(self) -> tuple[tuple[float, ...], ...]:
-        """Values along X and Y, at the same round distance."""
-        step = _step(max(self.high[0] - self.low[0], self.high[1] - self.low[1]) / _TICKS)
+        """Values along X and Y [m], at the same distance, round in the reader's unit."""
+        step = _round(max(self.high[0] - self.low[0], self.high[1] - self.low[1]) / _TICKS)
         return tuple(
-            tuple(round(step * at, 1) for at in range(math.ceil(low / step), math.floor(high / step) + 1))
+            tuple(round(step * at, 4) for at in range(math.ceil(low / step), math.floor(high / step) + 1))
             for low, high in zip(self.low, self.high, strict=True)
         )
 
     @property
     def bar(self) -> float:
-        """Length of the scale bar [m]: round, and about a sixth of the width."""
-        return _step((self.high[0] - self.low[0]) / 8)
+        """Length of the scale bar [m]: round in the reader's unit, and about a sixth of the width."""
+        return _round((self.high[0] - self.low[0]) / 8)
 
     def symbol_size(self, piece: Piece) -> float:
         """Return the size of a piece's symbol [px]: that of the piece, yet legible and no giant."""
@@ -259,6 +259,12 @@ def turn(item: ItemRow) -> float:
     if item.angle_deg is not None:
         return item.angle_deg
     return 90.0 if item.axis_given == "Y" else 0.0
+
+
+def _round(length: float) -> float:
+    """Return the least length [m] that is round in the reader's unit and at least this."""
+    scale = measures.convert(1.0, "m")
+    return _step(length * scale) / scale
 
 
 def _step(least: float) -> float:

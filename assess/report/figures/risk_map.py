@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from assess.i18n import gettext as _, ngettext, number
 from assess.progress import SILENT, Progress
-from assess.report import words
+from assess.report import measures, words
 from assess.report.blocks import Figure
 from assess.report.figures.draw import HATCHES, build_figure, draw, label
 from assess.report.figures.labels import Point, box_around, is_inside, overlap
@@ -161,18 +161,19 @@ def draw_contours(results: Results, progress: Progress = SILENT) -> Figure:
             axes.set_xlim(*breadth[[0, -1]])
             axes.set_ylim(*pfa[[0, -1]])
             axes.set_title(_(method.title), fontsize=8, loc="left")
-            axes.set_xlabel(_("breadth [cm]"), fontsize=8)
+            axes.set_xlabel(_("breadth [{unit}]", unit=measures.unit("cm")), fontsize=8)
+            axes.xaxis.set_major_formatter(lambda value, _at: words.in_cm(value))
             axes.tick_params(labelsize=7)
             _write_texts(axes, lines, places)
         drawn[0].set_ylabel(_("PFA [g]"), fontsize=8)
         paint_legend(figure)
 
     alternative = ngettext(
-        "Maps of the chance of overturning over breadth and PFA for a height of {height:.0f} cm ({methods}), with "
+        "Maps of the chance of overturning over breadth and PFA for a height of {height} ({methods}), with "
         "{n:,} piece on them; its chance is in the table of all pieces",
-        "Maps of the chance of overturning over breadth and PFA for a height of {height:.0f} cm ({methods}), with "
+        "Maps of the chance of overturning over breadth and PFA for a height of {height} ({methods}), with "
         "{n:,} pieces on them; their chances are in the table of all pieces",
-        count_pieces(pieces), height=height, methods=_name(methods),
+        count_pieces(pieces), height=measures.say(round(height), "cm"), methods=_name(methods),
     )  # fmt: skip
     drawing = draw(7, 3.6, paint, progress=progress)
     return build_figure(drawing, alternative, " ".join(_describe(height, pieces, ratio, methods)))
@@ -185,8 +186,8 @@ def _name(methods: Sequence["MethodInfo"]) -> str:
 def _describe(
     height: float, pieces: Sequence[ItemResult], ratio: float, methods: Sequence["MethodInfo"]
 ) -> Iterator[str]:
-    yield _("Chance of overturning of pieces {height:.0f} cm high by these methods: {methods}.",
-            height=height, methods=_name(methods))  # fmt: skip
+    yield _("Chance of overturning of pieces {height} high by these methods: {methods}.",
+            height=measures.say(round(height), "cm"), methods=_name(methods))  # fmt: skip
     yield ngettext(
         "The symbol is the one free-standing piece within 10 % of this height, at its breadth and the PFA of the "
         "motion that governs it.",
@@ -211,9 +212,10 @@ def _describe(
         return
     motion = pieces[0].governing.motion
     yield _(
-        "PFV grows with PFA, {ratio:.0f} cm/s for each g: the ratio of floor {floor} {axis}, whose motion governs the "
+        "PFV grows with PFA, {ratio} for each g: the ratio of floor {floor} {axis}, whose motion governs the "
         "worst of these pieces. Methods that depend on it: {methods}.",
-        ratio=(motion.pfv_cm_s or 0.0) / motion.pfa_g, floor=motion.floor, axis=motion.axis, methods=_name(by_velocity),
+        ratio=measures.say(round((motion.pfv_cm_s or 0.0) / motion.pfa_g), "cm/s"), floor=motion.floor,
+        axis=motion.axis, methods=_name(by_velocity),
     )  # fmt: skip
     if switching:
         yield _("Where a method changes from PFA to PFV, it jumps, which shows as a step: {methods}.",

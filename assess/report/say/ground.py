@@ -9,7 +9,7 @@ import numpy as np
 from assess.i18n import fill, gettext as _, ngettext, number
 from assess.intensity import RATIO, Shaking, name_mmi
 from assess.model import AXES
-from assess.report import words
+from assess.report import measures, words
 from assess.results import MAY_BE_LOWER, MOTION_FLAGS, FloorRow, MotionRow, Results, SuiteInfo
 from assess.units import GRAVITY
 from assess.workbook.schema import BUILDING
@@ -211,11 +211,11 @@ def _list_profiled(results: Results) -> list[tuple[str, str]]:
         source = _("{source} at the building, as the median", source=name_source(site))
     highest = max((one.elevation_m for one in results.floor_rows if one.elevation_m is not None), default=0.0)
     if building.height is not None:
-        roof = _("{height} m, Height", height=words.in_m(building.height))
+        roof = _("{height}, Height", height=measures.say(building.height, "m"))
     elif highest > 0:
-        roof = _("{height} m, the highest floor, as Height is blank", height=words.in_m(highest))
+        roof = _("{height}, the highest floor, as Height is blank", height=measures.say(highest, "m"))
     else:
-        roof = _("{height} m, no floor above the ground, Height is blank", height=words.in_m(0.0))
+        roof = _("{height}, no floor above the ground, Height is blank", height=measures.say(0.0, "m"))
     lines = [
         (_name_served(one.floor for one in results.motions if one.source == "profile"),
          _("design profile of {code}, the scenario", code=_with_status(used[0].key, used[0]))),
@@ -245,8 +245,8 @@ def _list_drawn(results: Results) -> list[tuple[str, str]]:
     building, origin = results.building, results.provenance
     ratio = _("as filled in")
     if building.ground_pgv is None:
-        ratio = _("drawn: median {ratio} cm/s per g, deviation of ln 0.40, as in earthquakes of magnitude 6.5 to 7.5",
-                  ratio=number(100 * RATIO * GRAVITY, ".0f"))  # fmt: skip
+        ratio = _("drawn: median {ratio} per g, deviation of ln 0.40, as in earthquakes of magnitude 6.5 to 7.5",
+                  ratio=measures.say(round(100 * RATIO * GRAVITY), "cm/s"))  # fmt: skip
         if origin.shaking or (origin.site_ground and origin.site_ground.pgv_cm_s):
             ratio = _("as the source of the ground motion has it")
     period = _("1.4 times ASCE 7-22 Eq. 12.8-7 for the height of the roof, standard deviation of ln 0.35")
@@ -327,14 +327,14 @@ def say_ground(results: Results, *, shortly: bool = False) -> str:
         return " ".join(_say_site(found, results))
     if shaking is not None and shortly:
         values = {
-            "intensity": _(shaking.choice), "pga": words.in_g(shaking.pga_g), "pgv": words.fixed(shaking.pgv_cm_s, 1),
-            "sources": ", ".join(shaking.sources),
+            "intensity": _(shaking.choice), "pga": words.in_g(shaking.pga_g),
+            "pgv": measures.say(shaking.pgv_cm_s, "cm/s"), "sources": ", ".join(shaking.sources),
         }  # fmt: skip
         if uses_scatter(results):
-            text = _("Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g, scatter of ln "
+            text = _("Assumed shaking: {intensity}, by its median PGV of {pgv} and PGA of {pga} g, scatter of ln "
                      "PGV {scatter} ({sources}).", scatter=number(shaking.scatter, "g"), **values)  # fmt: skip
         else:
-            text = _("Assumed shaking: {intensity}, by its median PGV of {pgv} cm/s and PGA of {pga} g ({sources}); "
+            text = _("Assumed shaking: {intensity}, by its median PGV of {pgv} and PGA of {pga} g ({sources}); "
                      "scatter is not in the results.", **values)  # fmt: skip
         return " ".join((text, *_say_factor(results)))
     if source := say_ground_source(results):
@@ -343,16 +343,16 @@ def say_ground(results: Results, *, shortly: bool = False) -> str:
     at_grade = {one.floor for one in results.floor_rows if one.elevation_m is not None and one.elevation_m <= 0}
     if own := [one for one in results.motions if one.floor in at_grade and one.source == "record"]:
         pga_g, pgv = max(one.pfa_g for one in own), max(one.pfv_cm_s or 0.0 for one in own)
-        text = _("Ground motion: recorded, with a PGA of {pga} g and a PGV of {pgv} cm/s.", pga=words.in_g(pga_g),
-                 pgv=words.fixed(pgv, 1))  # fmt: skip
+        text = _("Ground motion: recorded, with a PGA of {pga} g and a PGV of {pgv}.", pga=words.in_g(pga_g),
+                 pgv=measures.say(pgv, "cm/s"))  # fmt: skip
     elif building.known_pga is None:
         return ""
     else:
         pga_g = building.known_pga / GRAVITY
         if building.ground_pgv is not None:
             pgv = 100 * building.ground_pgv
-            text = _("Ground motion: PGA {pga} g and PGV {pgv} cm/s as filled in.", pga=words.in_g(pga_g),
-                     pgv=words.fixed(pgv, 1))  # fmt: skip
+            text = _("Ground motion: PGA {pga} g and PGV {pgv} as filled in.", pga=words.in_g(pga_g),
+                     pgv=measures.say(pgv, "cm/s"))  # fmt: skip
         elif any(one.source != "record" for one in results.motions):
             text = _("Ground motion: PGA {pga} g as filled in, taken as from an earthquake of magnitude 6.5 to 7.5.",
                      pga=words.in_g(pga_g))  # fmt: skip
@@ -376,8 +376,8 @@ def _say_site(found: "SiteGround", results: Results) -> Iterator[str]:
     if found.pgv_cm_s is None:
         yield _("Ground motion: {source}, with a median PGA of {pga} g at the building.", **values)
     else:
-        yield _("Ground motion: {source}, with a median PGA of {pga} g and PGV of {pgv} cm/s at the building.",
-                pgv=words.fixed(found.pgv_cm_s, 1), **values)  # fmt: skip
+        yield _("Ground motion: {source}, with a median PGA of {pga} g and PGV of {pgv} at the building.",
+                pgv=measures.say(found.pgv_cm_s, "cm/s"), **values)  # fmt: skip
     yield from _say_strength(found.pga_g, found.pgv_cm_s, results)
     yield from _say_factor(results)
 
@@ -404,8 +404,8 @@ def uses_scatter(results: Results) -> bool:
 def _say_shaking(found: Shaking, results: Results) -> str:
     scatter = number(found.scatter, "g")
     texts = [_("Assumed shaking: no motion of the ground is known for this building. {intensity} is assumed, with its "
-               "median PGV of {pgv} cm/s and PGA of {pga} g ({sources}).", intensity=_(found.choice),
-               pga=words.in_g(found.pga_g), pgv=words.fixed(found.pgv_cm_s, 1),
+               "median PGV of {pgv} and PGA of {pga} g ({sources}).", intensity=_(found.choice),
+               pga=words.in_g(found.pga_g), pgv=measures.say(found.pgv_cm_s, "cm/s"),
                sources=", ".join(found.sources)), *_say_factor(results)]  # fmt: skip
     if uses_scatter(results):
         texts.append(_("PGV scatters about this median by {scatter} (standard deviation of ln PGV), which is drawn.",
@@ -570,9 +570,9 @@ def say_motions(floor: FloorRow, motions: Sequence[MotionRow]) -> str:
             is_one = len({one.pfa_g for one in own}) < 2
             peaks.append(peak if is_one else _("{peak} (the largest of {n})", peak=peak, n=len(own)))
         if known:
-            speeds.append(_("PFV {axis} {pfv} cm/s", axis=axis, pfv=words.fixed(max(known), 1)))
+            speeds.append(_("PFV {axis} {pfv}", axis=axis, pfv=measures.say(max(known), "cm/s")))
     sources = list(dict.fromkeys(map(describe_source, motions)))
     text = ": ".join(filter(None, ("; ".join([*peaks, *speeds]), words.name_first(sources, 3, "; "))))
     if floor.elevation_m is None:
         return f"{text}."
-    return _("{elevation} m above ground. {motion}.", elevation=words.in_m(floor.elevation_m), motion=text)
+    return _("{elevation} above ground. {motion}.", elevation=measures.say(floor.elevation_m, "m"), motion=text)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from assess.details import CHECK, DETAILS
 from assess.i18n import fill, gettext as _, number
-from assess.report import words
+from assess.report import measures, words
 from assess.report.content import Content
 from assess.report.say import work as say_work
 from assess.results import ItemResult
@@ -59,7 +59,7 @@ class Line:
         pull = self.work.row.pull_kn
         if pull == 0:
             return _("none")
-        return words.DASH if pull is None else f"{say_work.say_force(pull)}{words.NO_BREAK}kN"
+        return words.DASH if pull is None else f"{say_work.say_force(pull)}{words.NO_BREAK}{measures.unit('kN')}"
 
     def say_effect(self, total: float) -> str:
         """Return what its entry takes away of all expected falls, `total`; "" of all its lines but the first."""

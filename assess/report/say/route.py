@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from assess.i18n import gettext as _, nfill, ngettext, number
-from assess.report import words
+from assess.report import measures, words
 from assess.report.provenance import say_reference
 from assess.results import Results
 from assess.route_results import (
@@ -204,14 +204,14 @@ def say_occupants(one: SegmentRow) -> str:
     """Return the width that its occupants need and the chance that less is left; a dash where none are given."""
     if one.needed_width_m is None:
         return words.DASH
-    needed = words.in_m(one.needed_width_m)
+    needed = measures.say(one.needed_width_m, "m")
     if one.insufficient_for_occupants:
-        return _("{width} m: insufficient for occupants", width=needed)
+        return _("{width}: insufficient for occupants", width=needed)
     if one.insufficient_after_falls is None and one.evaluated:
-        return _("{width} m: not known whether less is left", width=needed)
+        return _("{width}: not known whether less is left", width=needed)
     if one.insufficient_after_falls is None or one.insufficient_after_falls.high == 0:
-        return _("{width} m", width=needed)
-    return _("{width} m: less in {chance}", width=needed, chance=say_chance(one.insufficient_after_falls))
+        return needed
+    return _("{width}: less in {chance}", width=needed, chance=say_chance(one.insufficient_after_falls))
 
 
 def say_missing(missing: Sequence[MissingRow], *, has_cells: bool = True) -> str:
@@ -281,16 +281,17 @@ def list_widths() -> list[tuple[str, list[str]]]:
     """Return the publications that ask for widths, each with what it asks for where."""
     found: dict[str, list[str]] = {}
     for rule in RULES:
-        asked = _("{width:g} m: {where}", width=rule.width, where=_(rule.holds))
+        asked = _("{width}: {where}", width=measures.say(rule.width, "m"), where=_(rule.holds))
         found.setdefault(say_reference(rule.reference), []).append(asked)
     return list(found.items())
 
 
 def say_default_width() -> str:
     """Return the width that counts where the workbook gives none, and what an occupant needs."""
-    return _("Where the workbook gives no Required width, {default:g} m is taken. Occupants need {level:g} mm each, on "
+    return _("Where the workbook gives no Required width, {default} is taken. Occupants need {level:g} mm each, on "
              "stairs {stair:g} mm (0.2 and 0.3 in, International Building Code, section 1005.3).",
-             default=DEFAULT_WIDTH, level=LEVEL / LENGTH["mm"], stair=STAIR / LENGTH["mm"])  # fmt: skip
+             default=measures.say(DEFAULT_WIDTH, "m"), level=LEVEL / LENGTH["mm"],
+             stair=STAIR / LENGTH["mm"])  # fmt: skip
 
 
 # ---------------------------------------------------------------- sentences

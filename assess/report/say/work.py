@@ -7,7 +7,7 @@ from typing import NamedTuple
 from assess.details import CHECK, LEAST_FIXINGS
 from assess.fields import schedule_fields
 from assess.i18n import fill, gettext as _, ngettext, number
-from assess.report import words
+from assess.report import measures, words
 from assess.results import ItemResult, Results, count_pieces
 from assess.risk import RiskClass
 from assess.route_results import RouteTables
@@ -210,11 +210,8 @@ def say_fixings(work: WorkRow) -> int | str:
 
 
 def say_force(force: float | None) -> str:
-    """Return a force [kN] with two decimals, a dash for what is not known."""
-    if force is not None and 0 < force < 0.005:
-        least = number(0.01, ".2f")
-        return f"< {least}"
-    return words.fixed(force, 2)
+    """Return a force [kN] as a number in the reader's unit, kN or lb, a dash for what is not known."""
+    return words.DASH if force is None else measures.show(force, "kN")
 
 
 def say_cost(cost: float | None, currency: str = "") -> str:
@@ -334,7 +331,7 @@ def say_all_fixings(work: WorkRow) -> str:
     counted = _("{each} each, {all:,} in all", each=say_fixings(work), all=work.all_fixings)
     if not work.pull_kn:
         return _("{fixings}; the weight holds it", fixings=counted)
-    return _("{fixings}; {force} on each", fixings=counted, force=f"{say_force(work.pull_kn)} kN")
+    return _("{fixings}; {force} on each", fixings=counted, force=measures.say(work.pull_kn, "kN"))
 
 
 def say_effort(phase: PhaseRow, schedule: Schedule) -> str:

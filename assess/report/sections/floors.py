@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from assess.i18n import fill, gettext as _, ngettext, number
 from assess.model import AXES
-from assess.report import blocks, words
+from assess.report import blocks, measures, words
 from assess.report.content import FloorPage
 from assess.report.counts import Counts, count
 from assess.report.figures.plan import Plan
@@ -105,7 +105,8 @@ def _draw_plan(plan: Plan, view: View, about: str) -> blocks.Figure:
         shown = blocks.join_words(blocks.Span([sign, f" {name}"], "key") for sign, name in ways)
         legend.append(blocks.Paragraph(shown, "small legend ways"))
     if plan.keys:
-        names: list[blocks.Inline] = [_("Names without room on the plan, with X and Y in m:")]
+        first = _("Names without room on the plan, with X and Y in {unit}:", unit=measures.unit("m"))
+        names: list[blocks.Inline] = [first]
         for at, key in enumerate(plan.keys, start=1):
             place = f"{key.name} ({words.in_m(key.at[0])}; {words.in_m(key.at[1])}){',' if at < len(plan.keys) else ''}"
             names.append(blocks.Span([blocks.strong(str(key.number)), f" {place}"] if key.number else place, "key"))
@@ -177,7 +178,8 @@ def build_motions(view: View) -> blocks.Section:
     for page in view.content.shown_floors:
         title = page.title
         if page.floor.elevation_m is not None:
-            title = _("{floor}, {elevation} m above ground", floor=title, elevation=words.in_m(page.floor.elevation_m))
+            title = _("{floor}, {elevation} above ground", floor=title,
+                      elevation=measures.say(page.floor.elevation_m, "m"))  # fmt: skip
         rows = [blocks.part(title, len(columns))]
         rows += [blocks.Row([column.cell(one) for column in columns]) for one in page.motions[:MOST]]
         if (left := len(page.motions) - MOST) > 0:

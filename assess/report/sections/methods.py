@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from assess.i18n import fill, gettext as _, number
-from assess.report import blocks, statements, words
+from assess.report import blocks, measures, statements, words
 from assess.report.figures.draw import build_figure
 from assess.report.figures.motion_figures import draw_motion, get_acceleration
 from assess.report.page_columns import say_flag
@@ -84,9 +84,9 @@ def build_methods(view: View) -> blocks.Section:
 def _list_worked(view: View, example: ItemResult) -> list[blocks.Block]:
     found: list[blocks.Block] = [
         blocks.Heading(_("Worked example: {item}", item=words.cut(example.item.item, 40))),
-        blocks.Paragraph(_("{what}, floor {floor}: {size} cm, {axis}, under its governing motion. All other numbers "
+        blocks.Paragraph(_("{what}, floor {floor}: {size}, {axis}, under its governing motion. All other numbers "
                            "are computed in the same way.", what=describe(example, 60),
-                           floor=words.cut(example.item.floor, 20), size=words.size(example),
+                           floor=words.cut(example.item.floor, 20), size=f"{words.size(example)} {measures.unit('cm')}",
                            axis=_("along {axis}", axis=example.governing.motion.axis))),
     ]  # fmt: skip
     for one in view.run.worked:
@@ -234,9 +234,11 @@ def list_facts(view: View) -> blocks.Table:
             used, chosen = run.provenance.scenario, value or "as filled"
             value = used if used == chosen else _("{used} (the workbook: {chosen})", used=_(used), chosen=_(chosen))
         if value not in (None, ""):
-            shown = number(value / column.factor, ".4g") if isinstance(value, float) else str(value)
+            shown = str(value)
+            if isinstance(value, float):
+                shown = number(measures.convert(value / column.factor, column.unit), ".4g")
             shown = (YES if value else NO) if column.kind == "flag" else shown
-            shown += f" {column.unit}" if column.quantity else ""
+            shown += f" {measures.unit(column.unit)}" if column.quantity else ""
             shown = ground.say_peak(run, column.name, shown) if column.name in ground.PEAKS else shown
             shown = words.clip(_(shown) if column.kind in ("choice", "flag") else shown)
             lines.append((_(column.label), words.cut(shown, 150) if is_client else shown))

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple, TypeVar
 
 from assess.i18n import fill, gettext as _, ngettext
-from assess.report import blocks, words
+from assess.report import blocks, measures, words
 from assess.report.page_columns import PageColumn, flags, route_columns, say_flag
 from assess.report.say import route
 from assess.report.view import Part, View, say_left
@@ -329,8 +329,8 @@ def _list_rooms(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block]
 
 def _list_segments(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block]:
     found = view.run.route_tables
-    caption = _("Widths in m. Width now: with nothing fallen; all fallen: what is left with every free-standing piece "
-                "fallen. Bounds: independent / fully correlated.")  # fmt: skip
+    caption = _("Widths in {unit}. Width now: with nothing fallen; all fallen: what is left with every free-standing "
+                "piece fallen. Bounds: independent / fully correlated.", unit=measures.unit("m"))  # fmt: skip
 
     def say_bounds(one: SegmentRow) -> str:
         is_known = one.evaluated and one.state != RouteState.NOT_KNOWN
@@ -388,9 +388,9 @@ def _list_beside(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block
     found: list[blocks.Block] = [blocks.Heading(_("The pieces that matter"))]
     if beside:
         caption = _("The segments most likely to be blocked come first. Distance to the edge of the route, how far the "
-                    "piece lies in it once fallen, and the width that it alone leaves, in m. Falls and blocked: chance "
-                    "that it falls and the segment is blocked, of a row that at least one of its pieces does; for an "
-                    "anchored one, if anchors fail.")  # fmt: skip
+                    "piece lies in it once fallen, and the width that it alone leaves, in {unit}. Falls and blocked: "
+                    "chance that it falls and the segment is blocked, of a row that at least one of its pieces does; "
+                    "for an anchored one, if anchors fail.", unit=measures.unit("m"))  # fmt: skip
         heads = [
             blocks.Column(_("Segment"), "segment"), blocks.Column(_("Floor"), "floor"),
             *(blocks.Column(one.heading, one.column.width, one.is_number) for one in columns),

@@ -7,7 +7,7 @@ from assess.details import DETAILS, WALLS, WHO
 from assess.fields import schedule_fields
 from assess.i18n import fill, gettext as _, ngettext
 from assess.pipeline.schedule import PHASE_RULE
-from assess.report import blocks, words
+from assess.report import blocks, measures, words
 from assess.report.page_columns import mark
 from assess.report.say import work as say
 from assess.report.view import Part, View, say_left
@@ -138,10 +138,7 @@ def _list_details(view: View, keys: Sequence[str]) -> Iterator[blocks.Table]:
     if any(DETAILS[key].is_at_wall for key in keys):
         names = {"studs": _("Studs"), "concrete": _("Concrete"), "masonry": _("Masonry")}
         heads = blocks.list_columns((_("Wall"), "w18"), (_("One fixing"), ""))
-        walls = [
-            (blocks.head(names[wall]), _(one.us if view.run.building.report_units == "US" else one.si))
-            for wall, one in WALLS.items()
-        ]
+        walls = [(blocks.head(names[wall]), _(one.us if measures.is_us() else one.si)) for wall, one in WALLS.items()]
         yield blocks.table(heads, walls, "few")
 
 

@@ -5,7 +5,7 @@ from itertools import islice
 
 from assess.details import DETAILS, WHO
 from assess.i18n import fill, gettext as _, ngettext, number
-from assess.report import blocks, words
+from assess.report import blocks, measures, words
 from assess.report.figures.codes import draw_code
 from assess.report.figures.plan import crop_plan
 from assess.report.say import orders as say, work as say_work
@@ -115,7 +115,11 @@ def _show_detail(view: View, key: str) -> blocks.Box:
     detail = DETAILS[key]
     files = (folder / "details" / detail.drawing for folder in view.options.folders if detail.drawing)
     drawing = [blocks.Figure(blocks.Image(file.read_text(encoding="utf-8"))) for file in files if file.is_file()][:1]
-    walls = (f"{_(name)}: {_(detail.say_fixing(wall))}." for wall, name in WALLS.items()) if detail.is_at_wall else ()
+    walls = (
+        (f"{_(name)}: {_(detail.say_fixing(wall, us=measures.is_us()))}." for wall, name in WALLS.items())
+        if detail.is_at_wall
+        else ()
+    )
     fixing = blocks.Bullets([*walls]) if detail.is_at_wall else blocks.Paragraph(f"{_(detail.fixing)}.")
     what = blocks.Paragraph([blocks.strong(_(detail.title)), f": {_(detail.what)}."])
     return blocks.Box([*drawing, what, fixing], "detail")
