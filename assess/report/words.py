@@ -193,7 +193,7 @@ def in_m(value: float | None) -> str:
 
 
 def size(one: ItemResult) -> str:
-    """Return breadth, width and height in the reader's unit; of a piece whose width is not known the two that are, by name."""
+    """Return breadth, width and height in the reader's unit; two of them by name where the width is not known."""
     if one.item.width_cm is None:
         return _("B {breadth}, H {height}", breadth=in_cm(one.item.breadth_cm), height=in_cm(one.item.height_cm))
     return " × ".join(in_cm(side) for side in (one.item.breadth_cm, one.item.width_cm, one.item.height_cm))

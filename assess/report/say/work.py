@@ -223,7 +223,7 @@ def say_cost(cost: float | None, currency: str = "") -> str:
 
 
 def say_code(results: Results) -> str:
-    """Return which force a code asks of anchors, and what was assumed for it; "" where no code applies."""
+    """Return a sentence on the force that a code asks of anchors, and what is assumed; "" where no code applies."""
     chosen = results.settings
     named = {"q": chosen.anchor_behaviour, "gamma": chosen.anchor_importance, "period": chosen.anchor_period}
     texts = {
@@ -233,7 +233,8 @@ def say_code(results: Results) -> str:
         "NTC 2018": _("F_a of NTC 2018, 7.2.3, with S_a and q_a of EN 1998-1, 4.3.5.2: q_a {q:g} and T_a {period:g} s "
                       "(assumed; EN 1998-1 not checked against its own text)", **named),
     }  # fmt: skip
-    return texts.get(results.provenance.anchor_code, "")
+    force = texts.get(results.provenance.anchor_code, "")
+    return _("By code: {force}.", force=force) if force else ""
 
 
 SCREENING = fill("screening, not design")

@@ -37,7 +37,17 @@ def build(view: View) -> blocks.Section:
     found += [
         *_list_changes(schedule),
         blocks.Heading(_("How each fix is made")),
-        blocks.Paragraph(blocks.join_words([_(say.CHECKS), _(say.DISAGREEMENT), *say.list_marks(schedule)]), "lead-in"),
+        blocks.Paragraph(
+            blocks.join_words(
+                [
+                    _(say.CHECKS),
+                    blocks.lower_indices(say.say_code(view.run)),
+                    _(say.DISAGREEMENT),
+                    *say.list_marks(schedule),
+                ]
+            ),
+            "lead-in",
+        ),
         *_list_details(view, [key for key in DETAILS if key in used]),
     ]
     return blocks.Section(found)
