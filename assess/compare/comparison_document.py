@@ -25,6 +25,7 @@ from assess.report.data import building_key
 from assess.report.pages.html import render_document
 from assess.report.provenance import say_date
 from assess.report.report_options import ReportOptions
+from assess.results import ROLLS
 from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.version import __version__
@@ -64,7 +65,7 @@ _KINDS: Mapping[Direction, tuple[Text, Text, str]] = {
     Direction.REMOVED: (fill("only in BEFORE"), fill("items removed, or a smaller quantity"), "unclear"),
 }
 """Name, what its tile counts, and tone of each direction, in the order of the tiles."""
-_APART = {UNCONFIRMED: "unconfirmed", BY_FORMULA: "formula", ANCHORED: "anchored"}
+_APART = {UNCONFIRMED: "unconfirmed", BY_FORMULA: "formula", ROLLS: ROLLS, ANCHORED: "anchored"}
 """What stands outside the classes, as the reports call it."""
 _PIECES: Mapping[Direction, Text] = {
     Direction.WORSE: nfill("{n:,} piece goes to a higher class or is no longer anchored: {names}.",

@@ -21,7 +21,7 @@ from assess.model import MEASURED
 from assess.report.data import VERSION
 from assess.report.ownership import DATA
 from assess.resources import read_input
-from assess.results import BASES, CANNOT_ROCK
+from assess.results import BASES, CANNOT_ROCK, ROLLS
 from assess.risk import RiskClass
 from assess.table import Field, unnest
 from assess.text import plain_line
@@ -30,7 +30,7 @@ from assess.workbook.names import key
 CLASSES: Mapping[str, RiskClass] = {risk.word: risk for risk in reversed(RiskClass)}
 """The classes by their words, the highest first."""
 UNCONFIRMED, BY_FORMULA, ANCHORED = "unconfirmed", "by formula", "anchored"
-APART = (UNCONFIRMED, BY_FORMULA, ANCHORED)
+APART = (UNCONFIRMED, BY_FORMULA, ROLLS, ANCHORED)
 """What stands outside the classes of a run."""
 _EVERY = {one.key: one for one in item_fields(())}
 INPUTS: Mapping[str, Field] = {
@@ -141,7 +141,7 @@ class PastRun:
             return ANCHORED
         if self.is_counted(piece):
             return piece.risk.word
-        return UNCONFIRMED if piece.basis == UNCONFIRMED else BY_FORMULA
+        return piece.basis if piece.basis in (UNCONFIRMED, ROLLS) else BY_FORMULA
 
 
 COMPARISON = "comparison"

@@ -163,6 +163,7 @@ class Group:
     by_class: Mapping[RiskClass, int]
     unconfirmed: int
     by_formula: int
+    rolls: int
     anchored: int
     left_out: int
     cannot_rock: int
@@ -322,8 +323,8 @@ def _group(frame: pd.DataFrame) -> dict[str, list[Row]]:
 
 
 _ADDED = (
-    "pieces", "unconfirmed", "by_formula", "cannot_rock", "anchored", "left_out", "works", "works_without_cost",
-    "occupants", "people_not_known",
+    "pieces", "unconfirmed", "by_formula", "rolls", "cannot_rock", "anchored", "left_out", "works",
+    "works_without_cost", "occupants", "people_not_known",
 )  # fmt: skip
 """Fields of a group that are plain sums of a column of the same name."""
 

@@ -12,6 +12,7 @@ from assess.portfolio.city import PEOPLE_RULE, City, Group, Row, Spread
 from assess.report import words
 from assess.report.provenance import say_reference
 from assess.report.say.route import say_state
+from assess.results import ROLLS
 from assess.risk import LIMITS, RiskClass
 from assess.route_results import BLOCKED_FROM, RouteState
 from assess.text import plain_text
@@ -152,6 +153,8 @@ def _say_falls(group: Group) -> Iterator[str]:
         apart.append(ngettext("{n:,} unconfirmed", "{n:,} unconfirmed", group.unconfirmed))
     if group.by_formula:
         apart.append(ngettext("{n:,} by formula only", "{n:,} by formula only", group.by_formula))
+    if group.rolls:
+        apart.append(ngettext("{n:,} on castors", "{n:,} on castors", group.rolls))
     if apart:
         yield _("Pieces that could fall as well and are in none of these numbers: {apart}.", apart=", ".join(apart))
     if group.left_out:
@@ -263,6 +266,8 @@ def label_piece(row: Row, basis: str | None) -> str:
     if row["basis"] == "unconfirmed":
         said = _("unconfirmed ({risk})", risk=words.risk_word(risk))
         return f"{words.UNCONFIRMED} {said}"
+    if row["basis"] == ROLLS:
+        return f"{words.ROLLING} {words.say_apart(risk, ROLLS, has_simulated=True)}"
     if row["basis"] == "formula" and basis != "formula":
         said = _("{risk} by formula only", risk=words.risk_word(risk))
         return f"{words.BY_FORMULA} {said}"

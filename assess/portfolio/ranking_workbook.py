@@ -78,6 +78,7 @@ def _list_sums() -> list[tuple[str, Callable[[Group], float | None], str]]:
         (_("Pieces of class very high"), lambda group: group.by_class[RiskClass.VERY_HIGH], COUNT),
         (_("Unconfirmed pieces, in no class"), attrgetter("unconfirmed"), COUNT),
         (_("Pieces by formula only, in no class"), attrgetter("by_formula"), COUNT),
+        (_("Pieces on castors, in no class"), attrgetter("rolls"), COUNT),
         (_("Anchored pieces, in no class"), attrgetter("anchored"), COUNT),
         (_("Components left out of COBie files, in no number"), attrgetter("left_out"), COUNT),
         (_("Expected falls"), attrgetter("falls.expected"), SUM),

@@ -67,7 +67,7 @@ def adopted(*given: Case, settings: Settings = Settings()) -> Adoption:  # noqa:
         SIMULATION: Outcome(np.array([one.share for one in given]), detail, flags),
     }
     cases = Cases.of(breadth=np.full(len(given), 0.4), height=1.8, pfa=[one.pfa * GRAVITY for one in given])
-    return adopt(outcomes, cases, settings)
+    return adopt(outcomes, cases, settings, np.zeros(len(given), dtype=np.bool_))
 
 
 def basis_of(found: Adoption, at: int = 0) -> str:
@@ -117,9 +117,9 @@ def test_a_stocky_piece_is_low_whatever_the_motion():
     detail = dict.fromkeys(("low", "high", "ideal", "ideal_low", "ideal_high", "if_faster"), unknown)
     simulated = Outcome(unknown, detail, dict.fromkeys(("unknown_building", "weak_motions", "fell_in_record"), no))
     outcomes = {FORMULA: Outcome(np.array([0.9])), SIMULATION: simulated}
-    found = adopt(outcomes, Cases.of(breadth=1.5, height=1.0, pfa=2 * GRAVITY), Settings())
+    found = adopt(outcomes, Cases.of(breadth=1.5, height=1.0, pfa=2 * GRAVITY), Settings(), np.array([False]))
     assert (basis_of(found), found.probability[0], found.upper[0]) == ("cannot rock", 0.0, LOW)
-    narrow = adopt(outcomes, Cases.of(breadth=1.4, height=1.0, pfa=2 * GRAVITY), Settings())
+    narrow = adopt(outcomes, Cases.of(breadth=1.4, height=1.0, pfa=2 * GRAVITY), Settings(), np.array([False]))
     assert (basis_of(narrow), narrow.probability[0]) == ("formula", 0.9)
 
 
@@ -203,7 +203,7 @@ def governing(*probabilities, items=None, pfa=None, basis=None):
     unknown, no, classes = np.full(count, np.nan), np.zeros(count, dtype=np.bool_), np.zeros(count, dtype=np.int64)
     bases = np.array([BASES.index(one) for one in basis or ["simulated"] * count], dtype=np.int8)
     chances = np.array(probabilities, dtype=np.float64)
-    adoption = Adoption(chances, unknown, unknown, classes, classes, bases, no, no, no, unknown)
+    adoption = Adoption(chances, unknown, unknown, classes, classes, bases, no, no, no, unknown, no)
     return find_governing(adoption, item, peaks * GRAVITY).tolist()
 
 

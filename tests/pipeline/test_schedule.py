@@ -149,3 +149,93 @@ def test_routes_and_rooms_that_averages_leave_out_are_counted():
     labels = {one.label: (one.before, one.after) for one in list_changes(schedule)[1]}
     shown = [labels[f"Left out of these averages: {what} not known"] for what in ("routes", "rooms")]
     assert shown == [(1, 0), (1, 0)]
+
+
+def rows_of(results):
+    return [(row.phase, results.item_rows[row.item_indices[0]].item) for row in results.schedule.rows]
+
+
+def test_what_avoids_most_and_what_saves_lives_is_done_now_and_what_avoids_little_is_listed_only():
+    """Of 117 like falls: 100 are more than 80 %, so that 16 are for later; 1 is less than 1 %, but of life safety."""
+    few = {"a": 100, "b": 16, "c": 1, "d": 1}
+    items = [TALL | {"item": name, "room": name, "quantity": n} for name, n in few.items()]
+    items[3]["importance"] = "life safety"
+    found, schedule, _ = schedule_of(items)
+    assert rows_of(found) == [("A", "a"), ("A", "d"), ("B", "b"), ("C", "c")]
+    assert [row.place for row in schedule.rows] == [1, 2, 3, 4]
+    chance = found["a"].adopted.probability
+    phases = [(one.phase, one.entries, one.pieces, one.places) for one in schedule.phases]
+    assert phases == [("A", 1 + 1, 101, 2), ("B", 1, 16, 1), ("C", 1, 1, 1)]
+    assert [one.falls_avoided for one in schedule.phases] == pytest.approx([101 * chance, 16 * chance, chance])
+    assert [one.falls_left for one in schedule.phases] == pytest.approx([17 * chance, chance, chance])
+    assert [one.after.falls for one in schedule.phases] == pytest.approx([17 * chance, chance, chance])
+    assert schedule.after == schedule.phases[-1].after
+    assert schedule.phases[0].hours == pytest.approx(101 * 0.75)
+    held = assess.run(read_sheets(Floors=FLOORS, Items=items), UNVERIFIED, figures=False, anchor=2)
+    assert held.schedule.before.falls == pytest.approx(17 * chance)
+    assert held.schedule.checks == (), "what the run holds is not to be checked"
+
+
+def test_what_opens_a_blocked_way_is_done_now_however_little_it_avoids():
+    items = [
+        TALL | {"item": "many", "room": "A", "quantity": 200},
+        TALL | {"item": "near", "room": "B", "route": "Way"},
+    ]
+    places = [
+        {"place": "Office", "kind": "room", "floor": "1", "x": 0, "y": 0},
+        {"place": "Street", "kind": "exit", "floor": "1", "x": 9, "y": 0},
+    ]
+    way = {"route": "Way", "segment": "hall", "floor": "1", "start": "Office", "end": "Street", "clear_width": 1.8}
+    found, schedule, _ = schedule_of(items, Places=places, Routes=[way])
+    assert dict(schedule.before.routes) == {"blocked": 1}
+    assert rows_of(found) == [("A", "many"), ("A", "near")]
+    assert dict(schedule.phases[0].after.routes) == {"open": 1}
+    found, _, _ = schedule_of([items[0], {**items[1], "route": None}])
+    assert rows_of(found) == [("A", "many"), ("C", "near")]
+
+
+def test_anchors_are_checked_or_completed_with_the_fixings_of_the_piece_and_trusted_ones_stand_in_no_sum():
+    items = [
+        TALL | {"item": "unknown", "room": "A", "anchored": "yes", "quantity": 2},
+        TALL | {"item": "strong", "room": "B", "anchored": "yes", "bracket_capacity": 50},
+        TALL | {"item": "weak", "room": "C", "anchored": "yes", "bracket_capacity": 0.02},
+        TALL | {"item": "partly", "room": "D", "anchored": "partly"},
+        TALL | {"item": "file", "room": "E", "anchored": "partly", "description": "Lateral file"},
+        TALL | {"item": "bare", "room": "F"},
+        SQUAT | {"item": "still", "room": "G", "anchored": "yes"},
+    ]
+    found, schedule, _ = schedule_of(items)
+    works = {one.items[0]: one for row in schedule.rows for one in row.works}
+    assert {name: (one.detail, one.like) for name, one in works.items()} == {
+        "weak": ("complete", "bracket"), "partly": ("complete", "bracket"), "file": ("complete", "base_angle"),
+        "bare": ("bracket", "bracket"),
+    }  # fmt: skip
+    assert works["partly"].pull_kn == works["bare"].pull_kn == works["bare"].tension_high_kn / works["bare"].fixings
+    assert (works["file"].tension_kn, works["file"].is_least) == (pytest.approx(works["bare"].tension_kn * 5.7), True)
+    (check,) = schedule.checks
+    assert (check.phase, check.works[0].items, check.works[0].detail) == ("A", ("unknown",), "check")
+    assert (check.falls_avoided, check.falls_at_most) == (0, 2 * found["unknown"].adopted.probability)
+    assert check.place == len(schedule.rows) + 1
+
+
+@pytest.mark.parametrize(
+    ("given", "detail"),
+    [
+        ({"type": "Gas cylinder"}, "chain"), ({"type": "Fume cupboard"}, "maker"),
+        ({"type": "Server rack 42U"}, "rack"),
+        ({"type": "Refrigerator side by side"}, "strap"), ({"type": "Mobile shelving carriage"}, "ceiling"),
+        ({"type": "Coat stand"}, "clear"), ({"type": "IV stand on castors"}, "castors"),
+        ({"type": "Gas cylinder trolley"}, "chain"), ({"type": "Bookcase 5 shelves"}, "bracket"),
+        ({"type": "Bookcase 5 shelves", "against_wall": "no"}, "base_angle"),
+        ({"type": "Refrigerator side by side", "against_wall": "no"}, "base_angle"),
+        ({"type": "Bookcase 5 shelves", "mobile": "yes"}, "castors"), ({"notes": "stands on castors"}, "castors"),
+        ({"notes": "stands on castors", "mobile": "no"}, "bracket"), ({"description": "Filing cabinet"}, "base_angle"),
+        ({"type": "Own, to the ceiling"}, "ceiling"), ({"type": "Own, not said"}, "bracket"),
+    ],
+)  # fmt: skip
+def test_each_piece_gets_a_fix_that_it_can_have(given, detail):
+    types = [{"type": "Own, to the ceiling", "fix_by": "ceiling"}, {"type": "Own, not said"}]
+    types += [{"type": one} for one in {given.get("type")} - {None, *(one["type"] for one in types)}]
+    piece = {"floor": "1", "breadth": 30, "width": 60, "height": 190, "item": "a", "room": "A"}
+    _, schedule, _ = schedule_of([piece | given], Catalogue=types)
+    assert [work.detail for row in schedule.rows for work in row.works] == [detail]

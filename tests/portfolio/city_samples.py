@@ -17,8 +17,8 @@ NASTY = "=cmd|' /C calc'!A0 </script><script>alert(1)</script> \u2028 \u202e"
 """A name that attacks a spreadsheet, a page and whoever reads it."""
 BUILDING = {
     "status": "assessed", "inventory": "surveyed", "basis": "simulated", "draws": 20, "pieces": 12, "low": 3,
-    "medium": 2, "high": 2, "very_high": 1, "cannot_rock": 1, "unconfirmed": 0, "by_formula": 0, "anchored": 2,
-    "expected_falls": 1.9, "falls_p05": 0.0, "falls_p95": 5.0, "falls_avoided": 1.4, "works": 4,
+    "medium": 2, "high": 2, "very_high": 1, "cannot_rock": 1, "unconfirmed": 0, "by_formula": 0, "rolls": 0,
+    "anchored": 2, "expected_falls": 1.9, "falls_p05": 0.0, "falls_p95": 5.0, "falls_avoided": 1.4, "works": 4,
     "works_without_cost": 0, "cost": 1250.0, "is_placed": True, "latitude": 37.8, "longitude": -122.3, "use": "Office",
     "storeys": 3, "height_m": 11.4, "floor_area_m2": 900.0, "ground_source": "shakemap", "ground_pga_g": 0.21,
     "ground_pgv_cm_s": 23.4, "own_motions": 0, "largest_pfa_g": 0.345, "motion_uncertainty": 0.62, "routes": 0,

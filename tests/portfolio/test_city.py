@@ -17,8 +17,9 @@ from tests.portfolio.city_samples import frame
 
 BUILDING = {
     "status": "assessed", "inventory": "surveyed", "basis": "simulated", "draws": 4, "pieces": 10, "low": 4,
-    "medium": 3, "high": 1, "very_high": 0, "unconfirmed": 1, "by_formula": 0, "anchored": 1, "expected_falls": 1.0,
-    "is_placed": True, "own_motions": 0, "works": 2, "works_without_cost": 1, "cost": 150.0, "falls_avoided": 0.75,
+    "medium": 3, "high": 1, "very_high": 0, "unconfirmed": 1, "by_formula": 0, "rolls": 0,
+    "anchored": 1, "expected_falls": 1.0, "is_placed": True, "own_motions": 0, "works": 2, "works_without_cost": 1,
+    "cost": 150.0, "falls_avoided": 0.75,
     "routes": 2, "routes_open": 1, "routes_doubtful": 0, "routes_blocked": 0, "routes_not_known": 1, "occupants": 50,
     "people_blocked": 6.0, "people_not_known": 0, "warnings": 3,
 }  # fmt: skip

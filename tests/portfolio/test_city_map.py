@@ -31,7 +31,7 @@ from tests.portfolio.city_samples import NASTY, make_view
 
 SVG = "{http://www.w3.org/2000/svg}"
 ROW = {"status": "assessed", "expected_falls": 0.0, "low": 0, "medium": 0, "high": 0, "very_high": 0, "unconfirmed": 0,
-       "by_formula": 0, "anchored": 0, "routes_open": 0, "routes_doubtful": 0, "routes_blocked": 0,
+       "by_formula": 0, "rolls": 0, "anchored": 0, "routes_open": 0, "routes_doubtful": 0, "routes_blocked": 0,
        "routes_not_known": 0}  # fmt: skip
 
 

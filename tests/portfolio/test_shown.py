@@ -21,8 +21,8 @@ from tests.portfolio.city_samples import BUILDING, NASTY, PIECE, frame
 LANGUAGES = ("en", "it")
 RENDERERS = {"html": (render_page, read_html), "xlsx": (render_ranking, read_excel), "pdf": (render_summary, read_pdf)}
 BUILDINGS = (
-    {"path": "a/school.xlsx", "building": "School", "use": "School", "unconfirmed": 1, "by_formula": 1, "routes": 3,
-     "routes_open": 1, "routes_blocked": 1, "routes_not_known": 1, "occupants": 90, "people_not_known": 30,
+    {"path": "a/school.xlsx", "building": "School", "use": "School", "unconfirmed": 1, "by_formula": 1, "rolls": 0,
+     "routes": 3, "routes_open": 1, "routes_blocked": 1, "routes_not_known": 1, "occupants": 90, "people_not_known": 30,
      "people_blocked": 18.4, "own_motions": 2, "warnings": 3, "works_without_cost": 2},
     {"path": "b/school.xlsx", "building": "School", "use": "school", "same_as": "a/school.xlsx", "is_placed": False,
      "latitude": None, "longitude": None, "cost": None, "works_without_cost": 4, "routes": 1, "routes_doubtful": 1,

@@ -4,10 +4,12 @@ import re
 
 import pytest
 
+from assess.details import FIX_BY
 from assess.i18n import load_catalogue, speaking
 from assess.workbook.catalogue import ASSUMED, catalogue_rows, catalogue_texts, is_assumed, read_catalogue
 from assess.workbook.read import read_inventory
 from assess.workbook.template import Content, write_workbook
+from tests.workbook.books import problems_of, write
 
 LANGUAGES = ("en", "it")
 NUMBERS = ("breadth", "width", "height", "weight", "centre_of_gravity")
@@ -66,3 +68,34 @@ def test_every_type_gives_what_a_piece_lacks(tmp_path, units):
         assert (item.breadth, item.height) == pytest.approx((row["breadth"] / 100, row["height"] / 100), rel=1e-3)
         assert item.weight == (pytest.approx(row["weight"], rel=1e-3) if "weight" in row else None)
         assert item.centre_of_gravity == pytest.approx(row.get("centre_of_gravity", 50) / 100)
+
+
+def test_every_type_has_a_way_to_fix_it_and_what_is_on_castors_is_never_fixed_to_a_wall():
+    rows = catalogue_rows()
+    assert {row["fix_by"] for row in rows} == {*FIX_BY}
+    assert {row["mobile"] for row in rows} == {"", "yes"}
+    for row in rows:
+        assert row["mobile"] or "on castors" not in row["type"], row
+        assert not row["mobile"] or row["fix_by"] in ("castors", "chain", "by the maker"), row
+
+
+def test_an_unknown_way_to_fix_names_its_cell_and_the_choices(tmp_path):
+    header = ["Type", "Breadth [cm]", "Height [cm]", "Fix by", "Mobile"]
+    path = write(tmp_path, Catalogue=[header, ["Shelf", 30, 180, "glue", None], ["Cart", 60, 90, "castors", "perhaps"]])
+    found = {one.cell: one for one in problems_of(path)}
+    assert found.keys() == {"D2", "E3"}
+    assert "Fix by is 'glue', expected one of: wall bracket, strap, base angle, chain" in str(found["D2"].message)
+    assert {one.sheet for one in found.values()} == {"Catalogue"}
+
+
+def test_words_for_castors_only_ask_where_nothing_else_tells(tmp_path):
+    header = ["Item", "Floor", "Breadth [cm]", "Height [cm]", "Type", "Mobile", "Notes"]
+    rows = [["A", None, "On castors"], ["A", "no", "On castors"], ["Crash cart on castors", None, "Trolley"],
+            ["Linen cart", None, None], ["A", None, "carts to the left? no: see A1"], ["A", None, None]]  # fmt: skip
+    items = [header, *([f"P{at}", "1", 60, 100, *row] for at, row in enumerate(rows))]
+    inventory = read_inventory(write(tmp_path, items))
+    found = {one.cell: one for one in inventory.problems if "castors" in str(one.message)}
+    assert found.keys() == {"G2", "E5", "G6"}
+    assert {one.severity for one in found.values()} == {"note"}
+    assert "Fill in Mobile: yes or no." in str(found["G2"].fix)
+    assert [item.mobile for item in inventory.items] == [None, False, True, None, None, None]

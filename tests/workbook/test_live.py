@@ -457,6 +457,32 @@ def test_an_anchored_piece_has_no_class(tmp_path: Path) -> None:
         assert all(isinstance(one, float) for one in numbers)
 
 
+CASTORS = [("yes", None), ("Sì", None), ("y\u00a0", None), ("no", None), (None, None), (None, "yes"), ("no", "yes")]
+"""Mobile in Items and in the Catalogue."""
+
+
+def pieces_on_castors(path: Path) -> Path:
+    sizes: Rows = [{"breadth": 60, "height": 160}, {"breadth": 35, "height": 100}, {"breadth": 34.9, "height": 100},
+                   {"breadth": 60, "height": 160, "centre_of_gravity": 60}]  # fmt: skip
+    items = [{"item": f"A{at}", "floor": "1", "mobile": own, "type": "Cart" if listed else "Box", **size}
+             for at, ((own, listed), size) in enumerate(product(CASTORS, sizes))]  # fmt: skip
+    items.append({"item": "held", "floor": "1", "anchored": "yes", "mobile": "yes", **sizes[0]})
+    return fill(
+        path, items, [{"floor": "1", "pfa_x": 0.5}], {}, catalogue=[{"type": "Cart", "mobile": "yes"}, {"type": "Box"}]
+    )
+
+
+@pytest.mark.parametrize("language", ["en", "it"])
+def test_a_piece_that_rolls_has_no_class_unless_it_is_slender(tmp_path: Path, language: str) -> None:
+    with speaking(load_catalogue(language)):
+        path, word = pieces_on_castors(tmp_path / "book.xlsx"), gettext("rolls")
+        check(path)
+        shown = by_formualizer(path)
+    rolls = [shown[row][5:7] == [word] * 2 for row in range(2, 30)]
+    assert rolls == [on_castors and at < 2 for on_castors in (1, 1, 1, 0, 0, 1, 0) for at in (0, 1, 2, 3)]
+    assert shown[30][5] == gettext("anchored") if language == "en" else shown[30][5] != word
+
+
 BRACKETS: Rows = [
     {"anchored": word, "bracket_capacity": capacity, "bracket_height": height}
     for word in ("yes", "Sì", "partly", "no", "unknown")

@@ -65,7 +65,7 @@ BOOKS: Books = {
     "unknown types": live.unknown_types, "stray names": live.stray_names,
     "signs": lambda path: live.floors_of_signs(path, [*live.SIGNS, "12"]),
     "signs of no floor": lambda path: live.floors_of_signs(path, ["1**", "1?*", "~1?", "*?", "2*"]),
-    "anchored": live.anchored_pieces, "typed capacities": live.typed_capacities, "texts": live.texts_for_numbers,
+    "anchored": live.anchored_pieces, "on castors": live.pieces_on_castors, "typed capacities": live.typed_capacities, "texts": live.texts_for_numbers,
     "widths": live.breadths_and_widths, "slower motion": live.pieces_of_a_slower_motion,
     **{f"beside {at}": _beside(at) for at in (0, 9)}, "ground, JMA": _ground(ground.FLOORS, ground.BUILDINGS["JMA"]),
     "ground, Italian": _italian_ground(1), "typed, at grade, two ratios": _typed("at grade, two ratios"),

@@ -48,6 +48,7 @@ def build_items(view: View) -> blocks.Section:
            "appendix."), list_risky(view.results)),
         (f"{words.UNCONFIRMED} " + _("Unconfirmed, counted apart:"), list_apart(view.results, "unconfirmed")),
         (f"{words.BY_FORMULA} " + _("By formula only, counted apart:"), list_risky(view.results, "formula")),
+        (f"{words.ROLLING} " + _("On castors, not covered:"), list_apart(view.results, "rolls")),
     )  # fmt: skip
     for at, (text, rows) in enumerate(parts):
         if rows or not at:
@@ -63,6 +64,7 @@ def _list_all(view: View) -> blocks.Table:
         ("", ""),
         ("unconfirmed", _("Unconfirmed: nothing is known of the building, or the motions may be too weak")),
         ("formula", _("By formula only: not simulated")),
+        ("rolls", _("On castors: not covered; the chance is that of the piece without them")),
     ):
         own = [blocks.part(heading, len(columns))] if heading else []
         for one in view.content.listed[:MOST_ROWS]:
