@@ -58,7 +58,7 @@ def test_counts_lists_and_the_table_of_all_pieces_never_mix_bases(mixed):
     counts = count("all", rows)
     assert (counts.free, counts.unconfirmed, counts.by_formula, counts.anchored, counts.total) == (2, 4, 1, 1, 8)
     assert counts.expected == mixed["felled"].adopted.probability
-    assert counts.falls == f"{counts.expected:.1f} ({counts.falls_low:.0f} to 1) and up to 4"
+    assert counts.falls == f"{counts.expected:.1f} ({counts.falls_low:.0f} to 1), and up to 4 more"
     assert mixed["wide"].adopted.risk >= RiskClass.HIGH, "which the counts leave out"
     assert counts.risky == 1
     assert count("simulated", [mixed["felled"]]).falls == counts.falls.partition(" and")[0]

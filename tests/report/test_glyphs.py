@@ -47,7 +47,7 @@ def test_each_field_is_told_once_many_are_counted_marks_are_not_told_and_borrowe
         f"Items!D3: Room of 2 rows: no font here holds 書 (U+66F8), 庫 (U+5EAB); the PDF has � instead. {FIX}",
         "Items!E3: Description of 2 rows: no font here holds 本 (U+672C), 棚 (U+68DA), 椅 (U+6905), 子 (U+5B50); "
         f"the PDF has � instead. {FIX}",
-        f"Items!AC3: Notes of 2 rows: no font here holds 机 (U+673A); the PDF has � instead. {FIX}",
+        f"Items!AD3: Notes of 2 rows: no font here holds 机 (U+673A); the PDF has � instead. {FIX}",
     ]
     assert {one.severity for one in pdf.list_problems(results)} == {"warning"}
     missing = [glyphs.Missing("Items", f"A{at}", "Room", 1, "本") for at in range(14)]

@@ -50,8 +50,8 @@ def test_reports_name_source_scatter_and_provenance_where_the_numbers_are(writte
     assert {one["pfa_source"] for one in found["items"]} == {"ShakeMap, beam"}
     assert all("shakemap" in one["adopted"]["flags"] for one in found["items"])
     html = (written / "report.html").read_text(encoding="utf-8")
-    cover = html[html.index('<header class="cover">') : html.index("</header>")]
-    assert f"{SENTENCE} {SCATTER}" in read_text(cover)
+    told = html[html.index('<section id="certainty"') :].partition("</section>")[0]
+    assert f"{SENTENCE} {SCATTER}" in read_text(told)
     text = read_text(html)
     assert "dispersion of 0.41 (standard deviation of ln amplitude; the root of 0.4² + 0.0904²: Motion" in text
     for fact in ("19891018000415", "363 m/s; its effect is in the map", f"SHA-256 {site['sha256']}"):

@@ -70,14 +70,14 @@ def test_pieces_with_a_position_are_drawn_hatched_where_they_may_fall_and_links_
     _near(risky.corners, rectangle((2, 3), 90, (-0.15, 0.15), 0.8))
     assert len(risky.fallen) == 2
     assert not anchored.fallen
-    assert (anchored.class_name, anchored.symbol) == ("anchored", "⚓")
+    assert (anchored.class_name, anchored.symbol) == ("anchored", "anchored")
     assert (low.class_name, low.fallen) == ("low", ())
     assert plan.north == 45
     assert plan.y(plan.high[1]) == 0
     assert plan.y(4.0) < plan.y(3.0) < plan.size[1]
     assert plan.x(3.0) - plan.x(2.0) == pytest.approx(1 / plan.unit, abs=0.02)
     assert plan.y(2.0) - plan.y(3.0) == pytest.approx(1 / plan.unit, abs=0.02)
-    assert plan.outline([(plan.low[0], plan.high[1]), (plan.high[0], plan.high[1])]).startswith("M26 0L")
+    assert plan.outline([(plan.low[0], plan.high[1]), (plan.high[0], plan.high[1])]).startswith("M30 0L")
     for piece in plan.pieces:
         for corners in (piece.corners, *piece.fallen):
             assert all(plan.low[0] < x < plan.high[0] and plan.low[1] < y < plan.high[1] for x, y in corners)

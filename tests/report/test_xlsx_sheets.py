@@ -46,7 +46,7 @@ def test_every_sheet_is_set_up_for_print_and_items_show_bars_colours_and_choices
         assert sheet.page_setup.fitToWidth in (None, 1)
         assert sheet.oddHeader.left.text.strip() == "575 Market && Sons"
         assert sheet.oddHeader.right.text.strip() == sheet.title
-        assert sheet.oddFooter.left.text.strip() == "Chance of overturning in this scenario, not per year"
+        assert sheet.oddFooter.left.text.strip() == "Chance of overturning in an earthquake like this one, not per year"
         assert sheet.oddFooter.right.text.strip() == "Page &P of &N"
         if sheet.title != "Summary":
             assert sheet.print_title_rows == ("$1:$2" if sheet.title == "Work list" else "$1:$1")

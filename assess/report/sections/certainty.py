@@ -22,7 +22,7 @@ MOST_NAMED = 10
 def build(view: View) -> blocks.Section:
     """Return what a reader has to know before trusting page one."""
     content = view.content
-    shaking = say_ground(view.run, shortly=True)
+    shaking = say_ground(view.run)
     sources = "; ".join(list_sources(view.run.motions))
     found: list[blocks.Block] = [
         blocks.Heading(_("The earthquake")),
