@@ -33,9 +33,14 @@ def draw_building(floors: Sequence[FloorPage], routes: RouteTables) -> tuple[Ima
     if len(furnished) > MOST:
         kept = sorted(furnished, key=lambda page: (-page.counts.expected, -page.counts.unconfirmed))[:MOST]
     shown = [page for page in furnished if page in kept]
-    heights = [page.floor.elevation_m for page in shown]
-    if None not in heights:  # the highest on top
-        shown.sort(key=lambda page: -(page.floor.elevation_m or 0.0))
+    for heights in (
+        [page.floor.elevation_m for page in shown],
+        [next((one.height_ratio for one in page.motions), None) for page in shown],
+    ):
+        known = [one for one in heights if one is not None]
+        if len(known) == len(shown):  # the highest on top
+            shown = [shown[at] for at in sorted(range(len(shown)), key=known.__getitem__, reverse=True)]
+            break
     has_routes = bool(routes.routes)
     room = WIDTH - LABEL - 2 * GAP - (ROUTES if has_routes else 0.0)
     a_line = int(room / DOT)

@@ -47,7 +47,11 @@ def name_earthquake(results: Results) -> str:
         return _(results.provenance.shaking.name)
     if results.provenance.site_ground:
         return name_source(results.provenance.site_ground)
-    return _("as recorded in it") if any(one.has_record for one in results.motions) else _("as the workbook gives it")
+    return (
+        _("as it was recorded")
+        if any(one.has_record for one in results.motions)
+        else _("as strong as the workbook says")
+    )
 
 
 class Verified:
@@ -405,20 +409,22 @@ def list_effects(results: Results, rows: Sequence[ItemResult]) -> list[tuple[str
     """
     counted = [one for one in rows if not one.is_anchored and one.adopted.is_simulated]
     found = [(one.item.quantity, sim) for one in counted if (sim := one.governing.simulation) is not None]
-    effects = []
+    now, effects = sum(n * sim.probability for n, sim in found), list[tuple[str, float, float]]()
+
+    def add(label: str, ends: Sequence[float]) -> None:
+        effects.append((label, min(*ends, now), max(*ends, now)))
+
     if drawn := [(n, (sim.if_slower, sim.if_faster)) for n, sim in found if None not in (sim.if_slower, sim.if_faster)]:
         held = sum(n * sim.probability for n, sim in found if sim.if_slower is None)
         ends = [held + sum(n * (pair[at] or 0.0) for n, pair in drawn) for at in (0, 1)]
-        effects.append((_("ground motion and building: slow or fast for their peak"), min(ends), max(ends)))
+        add(_("ground motion and building: slow or fast for their peak"), ends)
     tried = sorted({at for _n, sim in found for at in sim.tried})
     if tried and not results.settings.ideal:
         low, high = tried[0], tried[-1]
         ends = [sum(n * sim.tried.get(at, sim.probability) for n, sim in found) for at in (low, high)]
-        name = _("strength of such an earthquake: dispersion {low} to {high}", low=number(low), high=number(high))
-        effects.append((name, min(ends), max(ends)))
+        add(_("strength of such an earthquake: dispersion {low} to {high}", low=number(low), high=number(high)), ends)
     if results.size_falls is not None:
-        name = _("sizes from the catalogue: bases about 5 % narrower or broader")
-        effects.append((name, min(results.size_falls), max(results.size_falls)))
+        add(_("sizes from the catalogue: bases about 5 % narrower or broader"), results.size_falls)
     return effects
 
 
