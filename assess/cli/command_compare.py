@@ -126,6 +126,7 @@ def describe_comparison(found: "Comparison") -> Iterator[str]:
 
     view = View(found)
     yield from view.list_warnings()
+    yield from view.list_status()
     yield view.headline
     yield from (f"  {text}" for text in (*view.list_worse(), *view.list_others()))
     for row in (*view.list_counts(), *view.list_route_counts()):

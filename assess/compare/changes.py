@@ -12,10 +12,11 @@ from enum import StrEnum
 from functools import cached_property
 from typing import Generic, TypeVar
 
-from assess.compare.past_run import ANCHORED, APART, CLASSES, PastChance, PastPiece, PastRun, PastState
+from assess.compare.past_run import ANCHORED, APART, CLASSES, PastChance, PastEntry, PastPiece, PastRun, PastState
 from assess.errors import InputError
 from assess.results import CANNOT_ROCK
 from assess.route_results import RouteState
+from assess.schedule_results import PHASES
 from assess.text import natural_key
 from assess.workbook.names import key
 
@@ -103,6 +104,24 @@ class PieceChange(Change[PastPiece]):
         return min(self.quantities) if self.before and self.after else self.row.quantity
 
 
+class Status(StrEnum):
+    """What became of a recommendation of the last report; the order is that of lists."""
+
+    OPEN = "open"
+    NEW = "new"
+    DROPPED = "no longer recommended"
+    DONE = "done"
+
+
+@dataclass(frozen=True, slots=True)
+class Recommendation:
+    """An entry of what to fix, of AFTER where it is new; `items` are the pieces that it is still, or newly, about."""
+
+    entry: PastEntry
+    status: Status
+    items: tuple[str, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Total:
     """A sum before and after; `is_within` as in `Change`, `is_comparable`: whether a difference means anything."""
@@ -132,6 +151,24 @@ class Comparison:
     def is_other_building(self) -> bool:
         """Whether both runs name their building, differently."""
         return len({key(run.name) for run in (self.before, self.after)} - {""}) > 1
+
+    @cached_property
+    def recommendations(self) -> tuple[Recommendation, ...]:
+        """What became of the entries of BEFORE, and the new ones of AFTER; those that are listed only are left out.
+
+        An entry is done once all of its pieces are anchored and hold, or are gone; open if AFTER recommends any other.
+        """
+        free = {key(one.item) for one in self.after.pieces if not one.is_held}
+        was, now = ([one for one in run.entries if one.phase != PHASES[-1]] for run in (self.before, self.after))
+        listed, known = ({key(item) for one in entries for item in one.items} for entries in (now, was))
+        found = []
+        for one in was:
+            left = tuple(item for item in one.items if key(item) in free)
+            status = Status.OPEN if listed & {*map(key, left)} else Status.DROPPED if left else Status.DONE
+            found.append(Recommendation(one, status, left))
+        fresh = ((one, tuple(item for item in one.items if key(item) not in known)) for one in now)
+        found += [Recommendation(one, Status.NEW, items) for one, items in fresh if items]
+        return tuple(sorted(found, key=lambda one: ([*Status].index(one.status), one.entry.place)))
 
     def count(self, *directions: Direction) -> int:
         """Count pieces, not rows, of some directions."""

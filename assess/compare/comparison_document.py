@@ -1,6 +1,7 @@
 """A comparison as a document of blocks, what gets worse first; Excel and terminal take their words from it."""
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -14,13 +15,15 @@ from assess.compare.changes import (
     Direction,
     PieceChange,
     StateChange,
+    Status,
     Total,
     count_states,
 )
 from assess.compare.past_run import ANCHORED, BY_FORMULA, CLASSES, INPUTS, UNCONFIRMED, PastChance
+from assess.details import DETAILS
 from assess.i18n import Text, fill, gettext as _, nfill, ngettext, number
 from assess.progress import SILENT, Progress
-from assess.report import blocks, words
+from assess.report import blocks, measures, words
 from assess.report.data import building_key
 from assess.report.pages.html import render_document
 from assess.report.provenance import say_date
@@ -51,20 +54,29 @@ SETTINGS: Mapping[str, Text] = {
     "anchor_resonance": fill("Anchors: resonance factor"),
     "anchor_strength": fill("Anchors: strength factor"),
     "anchor_importance": fill("Anchors: importance factor"),
+    "anchor_behaviour": fill("Anchors: behaviour factor"),
+    "anchor_period": fill("Anchors: period of the piece"),
     "route_risk": fill("Limit on the chance that a route is blocked"),
 }
 """Settings by name; of later versions' others the name is shown."""
-_KINDS: Mapping[Direction, tuple[Text, Text, str]] = {
-    Direction.WORSE: (fill("worse"), fill("higher class, or no longer anchored"), "worse"),
-    Direction.RISES: (fill("higher chance"), fill("in the same class"), "worse"),
-    Direction.BETTER: (fill("better"), fill("lower class, or anchored"), "better"),
-    Direction.FALLS: (fill("lower chance"), fill("in the same class"), "better"),
-    Direction.SAME: (fill("unchanged"), fill("or within the sampling interval"), ""),
-    Direction.UNCLEAR: (fill("not comparable"), fill("chances on different bases"), "unclear"),
-    Direction.ADDED: (fill("only in AFTER"), fill("new items, or a larger quantity"), "unclear"),
-    Direction.REMOVED: (fill("only in BEFORE"), fill("items removed, or a smaller quantity"), "unclear"),
+_KINDS: Mapping[Direction, tuple[Text, str]] = {
+    Direction.WORSE: (fill("worse"), "worse"),
+    Direction.RISES: (fill("higher chance"), "worse"),
+    Direction.BETTER: (fill("better"), "better"),
+    Direction.FALLS: (fill("lower chance"), "better"),
+    Direction.SAME: (fill("unchanged"), ""),
+    Direction.UNCLEAR: (fill("not comparable"), "unclear"),
+    Direction.ADDED: (fill("only in AFTER"), "unclear"),
+    Direction.REMOVED: (fill("only in BEFORE"), "unclear"),
 }
-"""Name, what its tile counts, and tone of each direction, in the order of the tiles."""
+"""Name and tone of each direction."""
+_STATUSES: Mapping[Status, tuple[Text, str]] = {
+    Status.OPEN: (fill("open"), "worse"),
+    Status.NEW: (fill("new"), "worse"),
+    Status.DROPPED: (fill("no longer recommended"), "unclear"),
+    Status.DONE: (fill("done"), "better"),
+}
+"""Name and tone of what became of a recommendation."""
 _APART = {UNCONFIRMED: "unconfirmed", BY_FORMULA: "formula", ROLLS: ROLLS, ANCHORED: "anchored"}
 """What stands outside the classes, as the reports call it."""
 _PIECES: Mapping[Direction, Text] = {
@@ -90,7 +102,7 @@ def name_direction(direction: Direction) -> str:
 
 def find_tone(direction: Direction) -> str:
     """Return "worse", "better", "unclear" or "same"."""
-    return _KINDS[direction][2] or "same"
+    return _KINDS[direction][1] or "same"
 
 
 def name_basis(basis: str) -> str:
@@ -118,10 +130,11 @@ def _say_chance(chance: PastChance) -> str:
 def say_inputs(change: PieceChange) -> list[str]:
     """Return what differs in the inputs of a piece: ``Height: 180 → 200 cm``."""
     texts = []
-    for name, (before, after) in change.inputs.items():
-        field = INPUTS[name]
-        values = _("{before} → {after}", before=_say_value(before), after=_say_value(after))
-        texts.append(_("{label}: {value}", label=_(field.label), value=f"{values} {field.unit}".rstrip()))
+    for name, sides in change.inputs.items():
+        field, unit = INPUTS[name], measures.unit(INPUTS[name].unit)
+        was, now = (measures.convert(one, field.unit) if isinstance(one, float) else one for one in sides)
+        values = _("{before} → {after}", before=_say_value(was), after=_say_value(now))
+        texts.append(_("{label}: {value}", label=_(field.label), value=f"{values} {unit}".rstrip()))
     return texts
 
 
@@ -246,6 +259,26 @@ class View:
             yield _("The limit on the chance that a route is blocked differs: {before} and {after}. Every state is by "
                     "the limit of its own run.", before=words.percent(self.before.route_risk),
                     after=words.percent(self.after.route_risk))  # fmt: skip
+
+    def list_status(self) -> list[str]:
+        """Return how many recommendations of the last report are done, open and new, and falls and ways out."""
+        counts, texts = Counter(one.status for one in self.found.recommendations), list[str]()
+        if n := counts.total() - counts[Status.NEW]:
+            done = counts.pop(Status.DONE, 0)
+            text = ngettext("{done:,} of {n:,} recommendation of the last report is done",
+                            "{done:,} of {n:,} recommendations of the last report are done", n,
+                            done=done)  # fmt: skip
+            more = (f"{number(counts[one], ',d')} {_(_STATUSES[one][0])}" for one in _STATUSES if counts[one])
+            texts.append(f"{', '.join((text, *more))}.")
+        values = {"before": _say_sum(self.found.falls.before), "after": _say_sum(self.found.falls.after)}
+        if self.found.has_same_basis:
+            texts.append(_("Expected falls: {before} before, {after} after.", **values))
+        was, now = count_states(self.before.routes, self.after.routes).get(RouteState.BLOCKED, (0, 0))
+        if self.before.routes or self.after.routes:
+            texts.append(
+                _("Ways out that are likely blocked: {before:,} before, {after:,} after.", before=was, after=now)
+            )
+        return texts
 
     @property
     def tone(self) -> str:
@@ -388,41 +421,27 @@ class View:
             if rows
         ]
 
-    def tabulate_moves(self) -> blocks.Table:
-        """Return the pieces by standing before and after; those of one run alone have a row and column of their own."""
-        moves, standings = self.found.moves, self.found.standings()
-        rows = [*standings, ABSENT] if any(was == ABSENT for was, _now in moves) else standings
-        columns = [*standings, ABSENT] if any(now == ABSENT for _was, now in moves) else standings
-
-        def cell(pieces: int, tone: str = "") -> blocks.Cell:
-            return blocks.Cell(
-                _say_sum(pieces) if pieces else blocks.DASH, tone if pieces or tone == "same" else "", sort=pieces
-            )
-
-        def tone(was: str, now: str) -> str:
-            if was == now:
-                return "same"
-            if ANCHORED in (was, now) and ABSENT not in (was, now):
-                return "worse" if was == ANCHORED else "better"
-            if not self.found.has_same_basis or not {was, now} <= {*CLASSES}:
-                return ""
-            return "worse" if CLASSES[now] > CLASSES[was] else "better"
-
-        lines = []
-        for was in rows:
-            cells = [cell(moves.get((was, now), 0), tone(was, now)) for now in columns]
-            every = cell(sum(moves.get((was, now), 0) for now in columns))
-            head = blocks.head(mark_standing(was) if was else _("not in BEFORE"))
-            lines.append(blocks.Row((head, *cells, every)))
-        totals = [sum(moves.get((was, now), 0) for was in rows) for now in columns]
-        lines.append(blocks.Row((blocks.head(_("all")), *map(cell, (*totals, sum(totals)))), "total"))
-        heads = [*(mark_standing(one).words if one else _("not in AFTER") for one in columns), _("all")]
-        shown = [blocks.Column(_("BEFORE ↓ AFTER →")), *(blocks.Column(one, is_number=True) for one in heads)]
-        return blocks.table(shown, lines, "matrix", is_cards=False)
-
-    def say_moves(self) -> str:
-        """Return what the rows and columns of that table are."""
-        return _("Rows: class in BEFORE ({before}). Columns: class in AFTER ({after}).", **self.bases)
+    def tabulate_status(self, most: int) -> blocks.Table:
+        """Return what became of the recommendations of the last report, and the new ones, at most so many."""
+        rows: list[tuple[blocks.Cell | blocks.Words, ...]] = []
+        for one in self.found.recommendations[:most]:
+            entry, left = one.entry, len(one.items) if one.status == Status.OPEN else 0
+            names = words.name_pieces(one.items or entry.items, 6)
+            if 0 < left < len(entry.items):
+                names = _("{names} ({left:,} of {n:,})", names=names, left=left, n=len(entry.items))
+            fixes = [_(DETAILS[key].title) if key in DETAILS else key for key in entry.details]
+            place = ", ".join(filter(None, (words.cut(entry.floor, 20), words.cut(entry.room, 30))))
+            name, tone = _STATUSES[one.status]
+            status = blocks.Span(_(name), f"change {tone}")
+            rows.append((status, blocks.head(names), place, entry.phase or blocks.DASH, "; ".join(fixes)))
+        heads = (
+            (_("Status"), "w18"),
+            (_("Pieces"), ""),
+            (_("Place"), "w20"),
+            (_("Phase"), "w9"),
+            (_("Fix with"), "w20"),
+        )
+        return blocks.table(blocks.list_columns(*heads), rows, "compared cards", is_named=True)
 
     def list_facts(self) -> list[Fact]:
         """Return what the two runs are, and the settings, uncertainties, motions, lines and versions that differ."""
@@ -486,7 +505,7 @@ def render_comparison(
 
     def build() -> blocks.Document:
         authors = [str(view.after.building.get(name) or "") for name in ("prepared_by", "organisation")]
-        about = _("Overturning of furniture in an earthquake: two runs compared")
+        about = _("Overturning of furniture in an earthquake: what has changed since the last report")
         title = blocks.Title(view.title, words.cut(view.title, 60), view.footer, words.cut(view.conditions, 150))
         counts, *routes = view.tabulate_counts()
         sums = _("Expected falls are sums over the free-standing pieces that have a class in their run: BEFORE "
@@ -494,20 +513,11 @@ def render_comparison(
                  "interval of a sum the pieces are taken as fully correlated.", **view.bases)  # fmt: skip
         counted: list[blocks.Block] = [counts, blocks.Paragraph(sums, "small")]
         counted += routes or [blocks.Paragraph(_("Neither run has evacuation routes."))]
-        moved: list[blocks.Block] = [blocks.Paragraph(_("There are no pieces."))]
-        if view.found.pieces:
-            tones = (
-                _("Dark cells: a higher class or no longer anchored; light blue cells: a lower class or anchored.")
-                if view.found.has_same_basis
-                else _("The bases differ, so no change of class is marked as better or worse.")
-            )
-            matrix = blocks.Box([view.tabulate_moves()], "scroll", label=_("Pieces by class, before and after"))
-            moved = [matrix, blocks.Paragraph(f"{view.say_moves()} {tones}", "small")]
         pieces = _list_pieces(view, 300 if for_print else 5000)  # rows on paper and on a screen; the Excel file has all
         sections = [
+            blocks.Section(list(_list_status(view)), "", "status", _("Status of the last report's recommendations")),
             blocks.Section(list(_say_worse(view)), "", "worse", _("What gets worse")),
             blocks.Section(counted, "run-on", "counts", _("Counts before and after")),
-            blocks.Section(moved, "run-on", "moved", _("Pieces by class, before and after")),
             blocks.Section(list(pieces), "", "changes", _("Pieces that changed")),
         ]
         if view.found.routes or view.found.rooms:
@@ -531,6 +541,14 @@ def render_comparison(
     return render_document(progress.wait_for(build), options, "compare.css", for_print=for_print, progress=progress)
 
 
+def _list_status(view: View) -> Iterator[blocks.Block]:
+    first, *others = view.list_status() or [_("The last report recommends nothing.")]
+    yield blocks.Paragraph([blocks.strong(first), " ", " ".join(others)], "lead")
+    if view.found.recommendations:
+        yield view.tabulate_status(MOST_STATES)
+        yield from blocks.more(len(view.found.recommendations) - MOST_STATES, _say_more)
+
+
 def _say_worse(view: View) -> Iterator[blocks.Block]:
     yield from (blocks.Paragraph(text, "caution") for text in view.list_warnings())
     worse, others = view.list_worse(), view.list_others()
@@ -541,16 +559,8 @@ def _say_worse(view: View) -> Iterator[blocks.Block]:
     yield blocks.Box(verdict, f"verdict {view.tone}")
     if others:
         yield blocks.Bullets(others)
-    counts = {one: view.found.count(one) for one in _KINDS}
-    yield blocks.Tiles(
-        [
-            blocks.Tile(tone if counts[one] else "", _(label), _say_sum(counts[one]), _(about))
-            for one, (label, about, tone) in _KINDS.items()
-            if counts[one] or tone in ("worse", "better")
-        ]
-    )
     yield blocks.Paragraph(
-        _("The tiles count pieces. Pieces are matched by the name of their item. A difference within the sampling "
+        _("Pieces are matched by the name of their item. A difference within the sampling "
           "interval cannot be told from chance at 95 % (Newcombe 1998, method 10, draws of both runs taken as "
           "independent). Percentages without a range come from the formula only."),
         "small",

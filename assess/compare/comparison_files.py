@@ -26,6 +26,7 @@ from assess.i18n import gettext as _
 from assess.progress import SILENT, Progress
 from assess.report import check_folder, words
 from assess.report.blocks import Cell, Table, plain_words
+from assess.report.measures import reading
 from assess.report.ownership import find_reports, seal
 from assess.report.pages.pdf import attach, print_page
 from assess.report.provenance import report_time
@@ -74,7 +75,8 @@ def write_comparison(
     check_out(folder, formats)
     listed: dict[str, str | None] = {}
     try:
-        with stage_for(folder) as stage, options.spoken():
+        units = str(comparison.after.building.get("report_units") or "")
+        with stage_for(folder) as stage, options.spoken(), reading(units):
             missing = _write_all(View(comparison), stage / NEW, wanted, options, progress, listed)
             names = [*listed, FILES["json"]]
             gone = deliver(stage, folder, lambda target: _find_old(target, names), FILES["json"], progress)
@@ -193,6 +195,10 @@ def describe(found: Comparison, files: Mapping[str, str | None] | None = None) -
             "unjoined_rooms": pair(len(was.unjoined_rooms), len(now.unjoined_rooms)),
             "cut_off_rooms_expected": pair(was.cut_off_rooms, now.cut_off_rooms),
         },
+        "recommendations": [
+            {"status": one.status.value, "items": list(one.items), "phase": one.entry.phase, "place": one.entry.place}
+            for one in found.recommendations
+        ],
         "moves": [
             {"before": one or None, "after": to or None, "pieces": count} for (one, to), count in found.moves.items()
         ],
@@ -238,12 +244,10 @@ def write_tables(view: View, path: Path, progress: Progress = SILENT) -> None:
     """Write compare.xlsx in the language in use, as `assess.report.xlsx.pen.write_sheets` does."""
     found = view.found
 
-    def write_moves(pen: Pen, page: Any) -> None:
-        table = view.tabulate_moves()
-        labels = [plain_words(one.heading) for one in table.columns]
-        pen.heads(page, labels, [24, *(14 for _label in labels[1:])])
-        below = _write_rows(pen, page, 1, table)
-        pen.put(page, below, 0, view.say_moves(), pen.style("plain"))
+    def write_status(pen: Pen, page: Any) -> None:
+        table = view.tabulate_status(len(found.recommendations))
+        pen.heads(page, [plain_words(one.heading) for one in table.columns], [22, 44, 26, 10, 30])
+        _write_rows(pen, page, 1, table)
 
     items = [
         *_list_change_columns(),
@@ -268,7 +272,7 @@ def write_tables(view: View, path: Path, progress: Progress = SILENT) -> None:
     ]
     sheets: dict[str, Callable[[Pen, Any], object]] = {
         _("Summary"): partial(_write_summary, view),
-        _("Moved classes"): write_moves,
+        _("Recommendations"): write_status,
         _("Items"): lambda pen, page: pen.listing(page, items, found.pieces),
     }
     column = partial(Column, width=20, read=lambda one: one.row.name)
@@ -296,7 +300,7 @@ def _write_summary(view: View, pen: Pen, page: Any) -> None:
     texts = [
         (view.title, "title"),
         *((text, "warning") for text in (view.conditions, *view.list_warnings())),
-        (view.headline, "heading"),
+        *((text, "heading") for text in (*view.list_status(), view.headline)),
         *((text, "plain") for text in (*view.list_worse(), *view.list_others(), view.footer)),
     ]
     texts = [one for one in texts if one[0]]

@@ -86,6 +86,18 @@ class PastState:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class PastEntry:
+    """One entry of what to fix: its pieces by name, and how they are fixed; `phase` is "" in earlier versions."""
+
+    place: int
+    phase: str
+    floor: str
+    room: str
+    items: tuple[str, ...]
+    details: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class PastRun:
     """One run, as its results.json has it.
 
@@ -120,6 +132,7 @@ class PastRun:
     unknown_routes: int
     unknown_rooms: int
     unjoined_rooms: tuple[str, ...]
+    entries: tuple[PastEntry, ...] = ()
 
     @property
     def name(self) -> str:
@@ -337,6 +350,7 @@ def _read_run(record: Part, sha256: str, written: datetime.datetime) -> PastRun:
     if origin.values.get("site_ground") is not None:  # absent before version 5.1 of the schema
         found = origin.part("site_ground")
         site_ground = f"{found.text('file')}, {found.number('pga_g'):.3f} g, SHA-256 {found.text('sha256')[:16]}"
+    has_schedule = isinstance(record.values.get("schedule"), dict)
     demands = (demand for floor in record.rows("floors") for demand in floor.rows("demands"))
 
     def read_states(kind: str, chance: str) -> tuple[PastState, ...]:
@@ -379,6 +393,19 @@ def _read_run(record: Part, sha256: str, written: datetime.datetime) -> PastRun:
         unknown_routes=routes.count("unknown_routes"),
         unknown_rooms=routes.count("unknown_rooms"),
         unjoined_rooms=routes.list_texts("unjoined_rooms"),
+        entries=tuple(map(_read_entry, record.part("schedule").rows("entries") if has_schedule else ())),
+    )
+
+
+def _read_entry(row: Part) -> PastEntry:
+    works = row.rows("works")
+    return PastEntry(
+        place=row.count("place"),
+        phase=row.text("phase") if "phase" in row.values else "",
+        floor=row.text("floor"),
+        room=row.text("room"),
+        items=tuple(item for one in works for item in one.list_texts("items")),
+        details=tuple(dict.fromkeys(one.text("detail") for one in works)),
     )
 
 

@@ -185,7 +185,7 @@ def test_what_is_taken_as_anchored_is_put_into_words():
 def test_runs_without_a_common_item_are_not_compared(source, routed, tmp_path):
     empty = read_changed(source, tmp_path, lambda record: record["items"].clear())
     found = compare(empty, empty)
-    assert (found.pieces, len(View(found).tabulate_moves().columns)) == ((), 6)
+    assert found.pieces == ()
     for one, other in ((read_run(source), read_run(routed)), (empty, read_run(source))):
         with pytest.raises(InputError, match=r"have no item in common: they cannot be compared"):
             compare(one, other)

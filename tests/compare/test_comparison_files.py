@@ -76,7 +76,7 @@ def test_the_pdf_is_tagged_carries_the_document_and_says_the_same(found, written
     assert View(found).headline in text
     assert all("BEFORE: motion × 0.4" in " ".join(page.get_textpage().get_text_range().split()) for page in document)
     assert "Page 1 of" in text
-    assert next(mark.get_title() for mark in document.get_toc()) == "What gets worse"
+    assert next(mark.get_title() for mark in document.get_toc()) == "Status of the last report's recommendations"
     document.close()
 
 

@@ -28,6 +28,5 @@ def test_axe_finds_nothing_in_a_comparison(browser, page_path, width):
     assert page.locator(".conditions").inner_text() == "BEFORE: motion × 0.05"
     assert examine(page) == []
     assert page.evaluate("document.documentElement.scrollWidth") <= width
-    page.evaluate("document.querySelector('.scroll').classList.add('scroller')")
     assert page.evaluate(OVER_THE_EDGE, width) == []
     page.close()
