@@ -34,11 +34,11 @@ class Line:
 
     @property
     def how(self) -> str:
-        """The same, and how many fixings an anchor that is checked should have."""
+        """The same, and what an anchor that is checked or completed should be, and have."""
         row = self.work.row
-        if row.detail != CHECK or not row.fixings:
+        if row.like == row.detail or not row.fixings:
             return self.title
-        return _("{how}: at least {n} fixings each", how=self.title, n=row.fixings)
+        return _("{how} ({like}: at least {n} each)", how=self.title, like=_(DETAILS[row.like].title), n=row.fixings)
 
     @property
     def when(self) -> str:

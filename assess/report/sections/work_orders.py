@@ -73,7 +73,7 @@ def _build_room(view: View, order: RoomOrder, at: int) -> blocks.Section:
         text = open_template("plan.svg.j2", view.options).render(plan=crop, for_print=True)
         found.append(blocks.Figure(blocks.Image(text[text.index("<svg") :].rstrip()), kind="plan"))
     found.append(_list_lines(view, order))
-    used = dict.fromkeys(line.work.row.detail for line in order.lines)
+    used = {key for line in order.lines for key in (line.work.row.detail, line.work.row.like)}
     found.append(blocks.Box([_show_detail(view, key) for key in DETAILS if key in used], "details"))
     heads = blocks.list_columns((_("Signed off"), "w20"), (_("Name"), ""), (_("Signature"), "w30"), (_("Date"), "w18"))
     signs = [(blocks.head(role), "", "", "") for role in (_("Done by"), _("Checked by"))]
@@ -113,16 +113,14 @@ def _list_lines(view: View, order: RoomOrder) -> blocks.Table:
 
 def _show_detail(view: View, key: str) -> blocks.Box:
     detail = DETAILS[key]
-    files = (folder / "details" / detail.drawing for folder in view.options.folders if detail.drawing)
-    drawing = [blocks.Figure(blocks.Image(file.read_text(encoding="utf-8"))) for file in files if file.is_file()][:1]
-    walls = (
-        (f"{_(name)}: {_(detail.say_fixing(wall, us=measures.is_us()))}." for wall, name in WALLS.items())
-        if detail.is_at_wall
-        else ()
-    )
-    fixing = blocks.Bullets([*walls]) if detail.is_at_wall else blocks.Paragraph(f"{_(detail.fixing)}.")
+    drawn = view.read_drawing(detail)
+    drawing = [blocks.Figure(blocks.Image(drawn))] if drawn else []
+    fixings: blocks.Block = blocks.Paragraph(_("Fixings: {text}.", text=_(detail.fixing)))
+    if detail.is_at_wall:
+        us = measures.is_us()
+        fixings = blocks.Bullets([f"{_(name)}: {_(detail.say_fixing(wall, us=us))}." for wall, name in WALLS.items()])
     what = blocks.Paragraph([blocks.strong(_(detail.title)), f": {_(detail.what)}."])
-    return blocks.Box([*drawing, what, fixing], "detail")
+    return blocks.Box([*drawing, what, fixings], "detail")
 
 
 def build_stickers(view: View) -> blocks.Section:
