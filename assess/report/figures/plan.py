@@ -29,12 +29,12 @@ LARGEST = 90.0
 """Scale [px/m] that is not gone beyond for a few pieces close together."""
 BORDER = 0.4
 """Free space round everything that is drawn [m]."""
-AROUND, SMALLEST, CROPPED = 0.8, 6.0, 300.0
+AROUND, SMALLEST, CROPPED = 0.8, 6.0, 190.0
 """Free space round a room, and its least width and depth [m]; the height of its drawing [px] at most."""
 SHORT = 12
 """Characters of a piece's name that are drawn."""
 _STEPS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
-_TICKS = 12
+_TICKS, _FEW_TICKS = 12, 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +129,9 @@ class Plan:
     @property
     def ticks(self) -> tuple[tuple[float, ...], ...]:
         """Values along X and Y [m], at the same distance, round in the reader's unit."""
-        step = _round(max(self.high[0] - self.low[0], self.high[1] - self.low[1]) / _TICKS)
+        step = _round(
+            max(self.high[0] - self.low[0], self.high[1] - self.low[1]) / (_FEW_TICKS if self.is_crop else _TICKS)
+        )
         return tuple(
             tuple(round(step * at, 4) for at in range(math.ceil(low / step), math.floor(high / step) + 1))
             for low, high in zip(self.low, self.high, strict=True)
@@ -225,8 +227,8 @@ def crop_plan(plan: Plan, results: Results, room: str, numbers: Mapping[int, str
     under = plan.underlay if plan.underlay and not plan.underlay.image else None
     return replace(
         plan, key=key, title=f"{plan.title}: {words.cut(room, 60)}" if room else plan.title, pieces=pieces, places=(),
-        labels=(), ways=(), names=(), room_names=(), keys=(), cut_at="", is_crop=True, low=low, high=high, unit=unit,
-        rooms=tuple(one for one in plan.rooms if is_inside(one.outline)), underlay=under,
+        labels=(), ways=(), names=(), room_names=(), keys=(), cut_at="", is_crop=True, north=None, low=low, high=high,
+        rooms=tuple(one for one in plan.rooms if is_inside(one.outline)), underlay=under, unit=unit,
     )  # fmt: skip
 
 
