@@ -48,14 +48,10 @@ class Fixing:
 
 WALLS: Mapping[str, Fixing] = {
     "studs": Fixing(
-        fill(
-            "No. 10 wood screw (4.8 mm), 50 mm of thread in a stud of spruce-pine-fir: 0.85 kN in withdrawal (NDS "
-            "equation, before the factor for the duration of load)"
-        ),
-        fill(
-            "No. 10 wood screw, 2 in of thread in a stud of spruce-pine-fir: 192 lbf in withdrawal (NDS equation, "
-            "before the factor for the duration of load)"
-        ),
+        fill("No. 10 wood screw (4.8 mm), 50 mm of thread in a stud of spruce-pine-fir: 0.85 kN in withdrawal (NDS "
+             "equation, before the factor for the duration of load)"),
+        fill("No. 10 wood screw, 2 in of thread in a stud of spruce-pine-fir: 192 lbf in withdrawal (NDS equation, "
+             "before the factor for the duration of load)"),
         SCREW,
     ),
     "concrete": Fixing(
@@ -74,11 +70,10 @@ WALLS: Mapping[str, Fixing] = {
 class Detail:
     """A generic way to fix a piece: how it is done, what is known against it, and where that is printed.
 
-    `word` is what the column *Fix by* calls it, "" where it cannot be chosen there. `capacity` is that of one fixing in
-    studs [N], None where no source prints one; `least` how many fixings a piece has at least, 0 where none is counted;
-    `is_at_wall`: its fixings are one of `WALLS`; `is_at_base`: it holds the piece at its base, where the lever of its
-    fixings is the piece's breadth. `who` is a key of `WHO`; `hours` of work on one piece, of all people together,
-    assumed; `drawing` the name of its drawing in templates/details, "" without one.
+    `word` is what the column *Fix by* calls it, "" where it cannot be chosen there; `least` how many fixings a piece
+    has at least, 0 where none is counted. `is_at_wall`: its fixings are one of `WALLS`; `is_at_base`: it holds the
+    piece at its base, where the lever of its fixings is the piece's breadth. `who` is a key of `WHO`; `hours` are those
+    of work on one piece, of all people together, assumed.
     """
 
     key: str
@@ -86,8 +81,7 @@ class Detail:
     what: Text
     weakness: Text
     source: Text
-    fixing: Text
-    capacity: float | None = None
+    fixing: Text = WALLS["studs"].si
     is_at_base: bool = False
     word: str = ""
     who: str = "NE"
@@ -96,9 +90,14 @@ class Detail:
     is_at_wall: bool = False
 
     @property
+    def capacity(self) -> float | None:
+        """What one fixing in studs holds [N]; None where no source prints it."""
+        return WALLS["studs"].capacity if self.is_at_wall else None
+
+    @property
     def drawing(self) -> str:
         """The name of its drawing in templates/details; "" where it has none."""
-        return "" if self.key in ("pole",) else f"{self.key}.svg"
+        return "" if self.key == "pole" else f"{self.key}.svg"
 
     def say_fixing(self, wall: str = "studs", *, us: bool = False) -> Text:
         """Return what one fixing is in a wall, one of `WALLS`, in SI or in US units."""
@@ -106,112 +105,71 @@ class Detail:
         return (one.us if us else one.si) if self.is_at_wall else self.fixing
 
 
-_STUDS, _NONE, _ASSUMED = WALLS["studs"], fill("no fixing is counted"), fill("assumed: no citable source")
+_NONE, _ASSUMED = fill("no fixing is counted"), fill("assumed: no citable source")
 _NOT_PRINTED = fill("no capacity is printed")
 DETAILS: Mapping[str, Detail] = {
     one.key: one
     for one in (
-        Detail(
-            "bracket", fill("L-bracket to studs"),
-            fill(
-                "steel L-brackets near the top, screwed into studs or a solid wall, at least 2 in deep; FEMA (2008) "
-                "shows six for a bookcase of 3 x 6 ft"
-            ),
-            fill(
-                "rigid, assumed to load the screws at every impact. In houses 8.9 % overturned with it, 33.5 % "
-                "without (Kumamoto 2016, n = 79, Tokyo Fire Department); the Earthquake Country Alliance advises "
-                "straps instead"
-            ),
-            fill("FEMA 2008; Tokyo Fire Department, Kumamoto 2016"), _STUDS.si, _STUDS.capacity,
-            word="wall bracket", hours=0.75, is_at_wall=True,
-        ),
-        Detail(
-            "strap", fill("straps to two studs"),
+        Detail("bracket", fill("L-bracket to studs"),
+            fill("steel L-brackets near the top, screwed into studs or a solid wall, at least 2 in deep; FEMA (2008) "
+                 "shows six for a bookcase of 3 x 6 ft"),
+            fill("rigid, assumed to load the screws at every impact. In houses 8.9 % overturned with it, 33.5 % "
+                 "without (Kumamoto 2016, n = 79, Tokyo Fire Department); the Earthquake Country Alliance advises "
+                 "straps instead"),
+            fill("FEMA 2008; Tokyo Fire Department, Kumamoto 2016"), word="wall bracket", hours=0.75, is_at_wall=True),
+        Detail("strap", fill("straps to two studs"),
             fill("flexible nylon straps near the top, to two studs, drawn tight"),
-            fill(
-                "assumed: a slack strap lets the piece rock; stick-on ends hold no better than the face that they "
-                "stick to"
-            ),
-            fill("Earthquake Country Alliance"), _STUDS.si, _STUDS.capacity, word="strap", is_at_wall=True,
-        ),
-        Detail(
-            "base_angle", fill("base angle"),
-            fill(
-                "angles 2 x 2 x 3/16 in at the base, with lag screws 1/4 x 3 in into wood, or expansion bolts 3/8 x 2 "
-                "in into concrete"
-            ),
+            fill("assumed: a slack strap lets the piece rock; stick-on ends hold no better than the face that they "
+                 "stick to"),
+            fill("Earthquake Country Alliance"), word="strap", is_at_wall=True),
+        Detail("base_angle", fill("base angle"),
+            fill("angles 2 x 2 x 3/16 in at the base, with lag screws 1/4 x 3 in into wood, or expansion bolts 3/8 x "
+                 "2 in into concrete"),
             fill("it holds at the base, where the lever is short: the tension there is larger than at the top"),
-            fill("Earthquake Country Alliance"), _NOT_PRINTED, is_at_base=True, word="base angle", who="PR", hours=1.0,
-        ),
-        Detail(
-            "gang", fill("gang the row together"),
+            fill("Earthquake Country Alliance"), _NOT_PRINTED, is_at_base=True, word="base angle", who="PR", hours=1.0),
+        Detail("gang", fill("gang the row together"),
             fill("bolt neighbours in a row, or back to back, together near the top and at the base"),
             fill("it only helps where the row is broader than one piece: back to back, or with a return"),
-            _ASSUMED, _NOT_PRINTED,
-        ),
-        Detail(
-            "pole", fill("ceiling pole"),
+            _ASSUMED, _NOT_PRINTED),
+        Detail("pole", fill("ceiling pole"),
             fill("poles between the top and a solid ceiling, with wedges or mats at the base"),
-            fill(
-                "alone it failed in every shake-table test at JMA 6+ (Tokyo Metropolitan Government 2015); it needs a "
-                "ceiling that carries it, and a wedge or mat below"
-            ),
-            fill("Tokyo Metropolitan Government 2015"), _NOT_PRINTED,
-        ),
-        Detail(
-            "chain", fill("chains round the cylinder"),
-            fill(
-                "two chains or straps round each cylinder, above and below its middle, to a wall, a bench or a rack "
-                "that is itself fixed"
-            ),
+            fill("alone it failed in every shake-table test at JMA 6+ (Tokyo Metropolitan Government 2015); it needs "
+                 "a ceiling that carries it, and a wedge or mat below"),
+            fill("Tokyo Metropolitan Government 2015"), _NOT_PRINTED),
+        Detail("chain", fill("chains round the cylinder"),
+            fill("two chains or straps round each cylinder, above and below its middle, to a wall, a bench or a rack "
+                 "that is itself fixed"),
             fill("assumed: one chain alone lets the foot kick out; a chain that is left open holds nothing"),
-            _ASSUMED, _STUDS.si, _STUDS.capacity, word="chain", is_at_wall=True,
-        ),
-        Detail(
-            "castors", fill("lockable castors and a tether"),
-            fill(
-                "castors that lock, kept locked while it is parked, and a tether with a hook to the wall at its "
-                "parking place"
-            ),
+            _ASSUMED, word="chain", is_at_wall=True),
+        Detail("castors", fill("lockable castors and a tether"),
+            fill("castors that lock, kept locked while it is parked, and a tether with a hook to the wall at its "
+                 "parking place"),
             fill("assumed: it holds only while it is hooked and locked; no shake-table test of it is known"),
-            _ASSUMED, _NONE, word="castors", hours=0.25, least=0,
-        ),
-        Detail(
-            "rack", fill("rack braced at the top and bolted down"),
+            _ASSUMED, _NONE, word="castors", hours=0.25, least=0),
+        Detail("rack", fill("rack braced at the top and bolted down"),
             fill("bolts through the feet into the floor, and a brace at the top to a wall or the structure above"),
             fill("assumed: feet and posts may fail before the bolts; the brace needs something solid to go to"),
-            _ASSUMED, _NOT_PRINTED, word="rack", who="ER", hours=2.0,
-        ),
-        Detail(
-            "ceiling", fill("fixed to the ceiling"),
+            _ASSUMED, _NOT_PRINTED, word="rack", who="ER", hours=2.0),
+        Detail("ceiling", fill("fixed to the ceiling"),
             fill("rods or struts from its top to the structure above, braced in both directions"),
             fill("assumed: a suspended ceiling carries nothing; the structure above it has to"),
-            _ASSUMED, _NOT_PRINTED, word="ceiling", who="ER", hours=2.0,
-        ),
-        Detail(
-            "maker", fill("fixed by its maker"),
+            _ASSUMED, _NOT_PRINTED, word="ceiling", who="ER", hours=2.0),
+        Detail("maker", fill("fixed by its maker"),
             fill("the maker's own anchorage, fitted by the maker or as its manual says"),
             fill("assumed: drilling or bolting by others may damage it or end its warranty"),
-            _ASSUMED, _NONE, word="by the maker", who="PR", hours=1.0, least=0,
-        ),
-        Detail(
-            "clear", fill("keep out of the way"),
+            _ASSUMED, _NONE, word="by the maker", who="PR", hours=1.0, least=0),
+        Detail("clear", fill("keep out of the way"),
             fill("nothing is fixed: it stands where it blocks no way out and where nobody sits or sleeps beside it"),
             fill("assumed: it may still slide, roll or fall"),
-            _ASSUMED, _NONE, word="keep clear", hours=0.25, least=0,
-        ),
-        Detail(
-            "check", fill("check the anchor"),
+            _ASSUMED, _NONE, word="keep clear", hours=0.25, least=0),
+        Detail("check", fill("check the anchor"),
             fill("its anchor is found, looked at and tried; number and kind of fixings go into the workbook"),
             fill("assumed: what a wall hides, such as a missing stud, is not seen"),
-            _ASSUMED, _NONE, who="PR", hours=0.25, least=0,
-        ),
-        Detail(
-            "complete", fill("complete the anchor"),
+            _ASSUMED, _NONE, who="PR", hours=0.25, least=0),
+        Detail("complete", fill("complete the anchor"),
             fill("what is there is checked, and fixings are added until there are as many as the force needs"),
             fill("assumed: old and new fixings share the force only where they are alike"),
-            _ASSUMED, _NOT_PRINTED, who="PR", hours=0.75,
-        ),
+            _ASSUMED, _NOT_PRINTED, who="PR", hours=0.75),
     )
 }  # fmt: skip
 """Generic details by their key."""
@@ -221,7 +179,7 @@ _CASTORS = re.compile(
 )
 FIX_BY: Mapping[str, str] = {one.word: one.key for one in DETAILS.values() if one.word}
 """Keys of the details that the Catalogue offers, by the words of its column *Fix by*."""
-AT_WALL, AT_BASE, CASTORS, CHECK, COMPLETE = "bracket", "base_angle", "castors", "check", "complete"
+AT_WALL, AT_BASE, CHECK = "bracket", "base_angle", "check"
 ALTERNATIVES = ("gang", "pole")
 """Keys of the details that no schedule prices, as they are alternatives to others."""
 

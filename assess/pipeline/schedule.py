@@ -9,20 +9,10 @@ pieces that roll to be parked; what that avoids is in no sum.
 """
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from assess.details import (
-    AT_BASE,
-    AT_WALL,
-    CASTORS,
-    CHECK,
-    COMPLETE,
-    DETAILS,
-    count_fixings,
-    find_detail,
-    says_castors,
-)
+from assess.details import AT_BASE, AT_WALL, DETAILS, count_fixings, find_detail, says_castors
 from assess.i18n import fill
 from assess.model import Cost, Inventory
 from assess.pipeline.anchors import WHAT_IF
@@ -102,9 +92,7 @@ def build_schedule(
         )  # fmt: skip
         phases.append(row_of_phase)
     currency = next((one.currency for one in inventory.costs), "")
-    return Schedule(
-        rows=fixes, before=before, after=after, checks=checks, phases=tuple(phases), currency=currency
-    )  # fmt: skip
+    return Schedule(rows=fixes, before=before, after=after, checks=checks, phases=tuple(phases), currency=currency)
 
 
 def plan(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[Planned]:
@@ -113,24 +101,20 @@ def plan(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[Planned
         Planned(_B, one, sum(map(count_falls, one)), sum(map(_count_at_most, one) if one[0].apart else ()))
         for one in _group_entries(rows, routes)
     ]
-    entries.sort(
-        key=lambda one: (
-            APART.index(one.pieces[0].apart), -max(piece.adopted.upper for piece in one.pieces),
-            -one.avoided - one.at_most,
-        )
-    )  # fmt: skip
+    entries.sort(key=lambda one: -one.avoided - one.at_most)
+    entries.sort(key=lambda one: (APART.index(one.pieces[0].apart), -max(each.adopted.upper for each in one.pieces)))
     opening = {fix.item_index for one in routes for fix in one.fixes}
     blocked = [one for one in routes if one.state == RouteState.BLOCKED and one.is_fixed]
     urgent = {fix.item_index for one in blocked for fix in one.fixes}
     total = sum(one.avoided for one in entries)
 
     def is_needed(one: Planned) -> bool:
-        return any(piece.item.index in urgent or _is_dangerous(piece) for piece in one.pieces)
+        is_dangerous = (_is_safety(each) and each.adopted.upper >= RiskClass.HIGH for each in one.pieces)
+        return any(is_dangerous) or not urgent.isdisjoint(each.item.index for each in one.pieces)
 
     def is_poor(one: Planned) -> bool:
-        has_few = one.avoided < LITTLE * total or all(piece.adopted.risk == RiskClass.LOW for piece in one.pieces)
-        is_open = any(piece.item.index in opening or _is_safety(piece) for piece in one.pieces)
-        return has_few and not (is_open or one.pieces[0].apart)
+        has_few = one.avoided < LITTLE * total or all(each.adopted.risk == RiskClass.LOW for each in one.pieces)
+        return has_few and not any(each.apart or each.item.index in opening or _is_safety(each) for each in one.pieces)
 
     reached, phased = sum(one.avoided for one in entries if is_needed(one)), []
     for one in entries:
@@ -170,10 +154,6 @@ def _is_safety(one: ItemResult) -> bool:
     return one.item.importance == "life safety"
 
 
-def _is_dangerous(one: ItemResult) -> bool:
-    return _is_safety(one) and one.adopted.upper >= RiskClass.HIGH
-
-
 def _count_at_most(one: ItemResult) -> float:
     return one.adopted.probability * one.item.quantity
 
@@ -189,8 +169,14 @@ def list_entries(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list
 
 
 def _group_entries(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[list[ItemResult]]:
-    """Return the pieces of each entry: those that only help together, and alike ones of one room, stand in one."""
-    chosen = fix_first(rows, {fix.item_index for route in routes for fix in route.fixes})
+    """Return the pieces of each entry, the most urgent first: free ones of at least medium class, or that a way needs.
+
+    Those that only help together, and alike ones of one room, stand in one entry.
+    """
+    needed = {fix.item_index for route in routes for fix in route.fixes}
+    free = (one for one in rows if not (one.is_anchored or one.apart == ROLLS))
+    chosen = [one for one in free if one.adopted.upper >= RiskClass.MEDIUM or one.item.index in needed]
+    chosen.sort(key=lambda one: (-one.adopted.upper, -_count_at_most(one), natural_key(one.item.item)))
     leader = {one.item.index: one.item.index for one in chosen}
 
     def find(index: int) -> int:
@@ -210,33 +196,6 @@ def _group_entries(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> li
     for one in chosen:
         entries.setdefault(find(one.item.index), []).append(one)
     return list(entries.values())
-
-
-def fix_first(results: Iterable[ItemResult], needed: Collection[int] = ()) -> list[ItemResult]:
-    """Return the free-standing pieces of at least medium class and those that a route needs fixed, in order.
-
-    `needed` are the indices of the latter. Sorted by basis, so that those that stand apart come last, then by whether
-    the upper class is high or above, then life safety and routes, then the upper class, then probability times
-    quantity, then name. So a piece of low class that a route needs comes after the urgent pieces of medium class and
-    before those that are not urgent.
-    """
-    chosen = [
-        one
-        for one in results
-        if not (one.is_anchored or one.apart == ROLLS)
-        and (one.adopted.upper >= RiskClass.MEDIUM or one.item.index in needed)
-    ]
-    return sorted(
-        chosen,
-        key=lambda one: (
-            APART.index(one.apart),
-            one.adopted.upper < RiskClass.HIGH,
-            not one.is_urgent,
-            -one.adopted.upper,
-            -one.adopted.probability * one.item.quantity,
-            natural_key(one.item.item),
-        ),
-    )
 
 
 def _kind(one: ItemResult) -> tuple[object, ...]:
@@ -271,7 +230,9 @@ def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> Wo
     """
     first, rows = alike[0].item, [one.item for one in alike]
     detail = DETAILS[choose_detail(first)]
-    done = CHECK if first.is_held else COMPLETE if first.anchored in ("yes", "partly") else detail.key
+    done = (
+        "check" if first.is_held else "complete" if first.anchored in ("yes", "partly") and detail.least else detail.key
+    )
     pieces, cost = sum(one.quantity for one in rows), costs.get(done)
     tension, high, codes, shear = [], [], [], []
     for one in rows:
@@ -285,12 +246,9 @@ def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> Wo
     code = max(codes, default=None)
     fixings = count_fixings(detail, 1000 * max(*high, code or 0.0))
     return WorkRow(
-        floor=first.floor, room=first.room,
-        items=tuple(one.item for one in rows),
-        item_indices=tuple(one.index for one in rows),
-        pieces=pieces, detail=done, like=detail.key, tension_kn=max(tension),
-        tension_high_kn=max(high), tension_code_kn=code,
-        shear_kn=max(shear), fixings=fixings,
+        floor=first.floor, room=first.room, items=tuple(one.item for one in rows),
+        item_indices=tuple(one.index for one in rows), pieces=pieces, detail=done, like=detail.key,
+        tension_kn=max(tension), tension_high_kn=max(high), tension_code_kn=code, shear_kn=max(shear), fixings=fixings,
         weights_assumed=sum(one.quantity for one in rows if one.anchor.weight_source == "estimate"),
         heights_assumed=0 if detail.is_at_base else sum(one.quantity for one in rows if one.anchor.is_height_assumed),
         is_per_metre=any(one.anchor.is_per_metre for one in rows),
@@ -311,7 +269,7 @@ def choose_detail(item: ItemRow) -> str:
     detail = item.fix_by or (AT_BASE if any(word in named for word in FILES) else AT_WALL)
     is_mobile = item.mobile if item.mobile is not None else says_castors(named, item.notes)
     if detail in (AT_WALL, AT_BASE, "strap") and is_mobile:
-        return CASTORS
+        return "castors"
     return AT_BASE if detail in (AT_WALL, "strap") and item.against_wall is False else detail
 
 

@@ -435,12 +435,6 @@ def apart_label(name: str) -> str:
     }[name]
 
 
-def class_symbol(one: ItemResult) -> str:
-    """Return the sign of a piece: that of its class, or of why it stands outside the classes."""
-    signs = {"unconfirmed": UNCONFIRMED, "formula": BY_FORMULA, ROLLS: ROLLING}
-    return ANCHORED if one.is_anchored else signs.get(one.apart, one.adopted.risk.symbol)
-
-
 def style_name(one: ItemResult) -> str:
     """Return the name of the style of a piece: that of its class, or of why it stands outside the classes."""
     return "anchored" if one.is_anchored else f"apart-{one.apart}" if one.apart else class_name(one.adopted.risk)

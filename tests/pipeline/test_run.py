@@ -5,7 +5,7 @@ from threading import Event
 import pytest
 
 import assess
-from assess.pipeline.schedule import fix_first
+from assess.pipeline.schedule import plan
 from assess.risk import RiskClass, classify
 from tests.motion.motions import MARKET
 from tests.pipeline import rows
@@ -102,7 +102,8 @@ def test_what_to_fix_first():
         {"item": "mild", "floor": "1", "breadth": 70, "height": 180, **safety},
     ]
     results = list(rows.assessed(items, [{"floor": "1", "pfa_x": 0.25}], class_by="proposed OR"))
-    assert [one.item.item for one in fix_first(iter(results))] == ["worst", "many", "few", "plain", "mild"]
+    found = [(one.phase, one.pieces[0].item.item) for one in plan(results, ())]
+    assert found == [("A", "worst"), ("A", "many"), ("A", "few"), ("B", "plain"), ("B", "mild")]
     assert results[6].adopted.risk is RiskClass.MEDIUM  # no life safety puts it before what is likely to fall
     assert results[4].adopted.risk is RiskClass.LOW
 

@@ -18,8 +18,6 @@ NAMED = 2
 """Routes that a reason names; the rest are counted."""
 MOST_NAMES = 8
 """Names, or rows of them, that a page has room for; the Excel report holds all."""
-HELD = "¹"
-"""Mark of a tension of 0 at 84 % of PFA."""
 LITTLE, A_DAY = 0.05, 8.0
 """Falls below which next to nothing is avoided, and hours of a working day."""
 LEAST = "+"
@@ -175,11 +173,6 @@ class Work:
             texts.append(_("only together with {names}", names=named))
         texts += dict.fromkeys(filter(None, map(words.say_bracket, self.results)))
         return _keep("; ".join(texts)) or words.DASH
-
-    @property
-    def is_held_by_weight(self) -> bool:
-        """Whether nothing is left for the fixings to carry at 84 % of PFA."""
-        return self.row.tension_high_kn == 0
 
     @property
     def marks(self) -> str:
