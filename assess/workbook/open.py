@@ -20,6 +20,7 @@ from assess.errors import Problem, WorkbookError
 from assess.i18n import Text, fill
 from assess.progress import SILENT, Progress
 from assess.resources import open_input
+from assess.text import plain_line
 from assess.workbook.plain_rows import (
     PlainCell,
     RowCutter,
@@ -80,6 +81,9 @@ MAX_MERGED = 16_384
 
 _CHUNK = 2**16
 _ZIP, _OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+REPORT_OF = "assess: report of "
+"""How a property of a report begins that names its workbook; it stands in the part `PROPERTIES` of the file."""
+PROPERTIES = "docProps/custom.xml"
 TYPES, WORKBOOK, RELATIONS = "[Content_Types].xml", "xl/workbook.xml", "xl/_rels/workbook.xml.rels"
 _MAIN = ("sheet.main+xml", "template.main+xml", "sheet.macroEnabled.main+xml", "template.macroEnabled.main+xml")
 _STRICT = "http://purl.oclc.org/ooxml/spreadsheetml/main"
@@ -628,6 +632,15 @@ def _check_kind(types: Tree, book: Tree) -> None:
         raise unreadable(message, fill("In Excel: Save As, Excel Workbook (.xlsx), without Strict."))
 
 
+def _check_report(properties: Tree, name: str) -> None:
+    """Raise WorkbookError for a report of assess, which names the workbook that it is of."""
+    for named in (one.get("name", "") for one in properties.find("property")):
+        if named.startswith(REPORT_OF):
+            files = {"name": plain_line(name), "file": plain_line(named.removeprefix(REPORT_OF))}
+            message = fill("{name} is a report of {file}: edit {file} and run that.", **files)
+            raise unreadable(message, "")
+
+
 def _list_formats(styles: Tree) -> list[str | None]:
     codes = {one.get("numFmtId", ""): one.get("formatCode", "") for one in styles.find("numFmt")}
     return [find_format(one.get("numFmtId", "0"), codes) for one in styles.find("xf", "cellXfs")]
@@ -654,6 +667,8 @@ class Book:
         with self:
             types, book = self.read(Tree, TYPES), self.read(Tree, WORKBOOK)
             _check_kind(types, book)
+            if PROPERTIES in self.archive.namelist():
+                _check_report(self.read(Tree, PROPERTIES), name)
             links = self._links()
             self.parts = kinds = dict(links.values())
             self.sheets, self.hidden = dict[str, str](), set[str]()

@@ -9,8 +9,10 @@ from threading import Event
 import openpyxl
 import openpyxl.utils
 import pytest
+from openpyxl.packaging.custom import StringProperty
 
-from assess.errors import CancelledError
+import assess
+from assess.errors import CancelledError, WorkbookError
 from assess.i18n import Catalogue, speaking
 from assess.progress import Progress
 from assess.report.content import Content
@@ -244,3 +246,20 @@ def test_names_of_sheets_hold_excels_rules_sentences_with_holes_are_expressions_
         for line in heads:
             texts = [cell.partition(" ")[2] for cell in line.removeprefix("1: ").split(" | ")]
             assert len(texts) == len(set(texts)), line
+
+
+def test_a_report_is_no_workbook_and_names_the_one_to_edit(tmp_path):
+    """Also after another program has saved it; and a file of the user's own, whatever it says of itself, is none."""
+    results = assessed(tmp_path / "book.xlsx", ITEMS, FLOORS)
+    write_xlsx(Content(results), tmp_path / "report.xlsx")
+    name = results.provenance.workbook
+    openpyxl.load_workbook(tmp_path / "report.xlsx").save(tmp_path / "saved.xlsx")
+    for file in ("report.xlsx", "saved.xlsx"):
+        with pytest.raises(WorkbookError) as caught:
+            assess.read_inventory(tmp_path / file)
+        (problem,) = caught.value.problems
+        assert str(problem.message) == f"{file} is a report of {name}: edit {name} and run that."
+    book = openpyxl.load_workbook(tmp_path / "book.xlsx")
+    book.custom_doc_props.append(StringProperty(name="Report of", value="assess: report of a.xlsx"))
+    book.save(tmp_path / "own.xlsx")
+    assert assess.read_inventory(tmp_path / "own.xlsx", strict=False).items

@@ -75,4 +75,5 @@ def write_xlsx(content: Content, path: Path, progress: Progress = SILENT) -> Non
         created=datetime.datetime.fromisoformat(report_date()),
         texts=(words.cut(content.title, 80), ", ".join(conditions), say_scenario(run).rstrip(".")),
         progress=progress,
+        report_of=run.provenance.workbook,
     )

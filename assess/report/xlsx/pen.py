@@ -15,6 +15,7 @@ from assess.risk import RiskClass
 from assess.route_results import RouteState
 from assess.table import Field
 from assess.workbook.formulas import write_plainly
+from assess.workbook.open import REPORT_OF
 from assess.workbook.writer import write_book
 
 HEAD = 1
@@ -215,18 +216,20 @@ Write = Callable[[Pen, Any], object]
 
 def write_sheets(
     path: Path, sheets: Sequence[tuple[str, str, Write]], *, title: str, created: datetime, texts: tuple[str, str, str],
-    progress: Progress = SILENT,
+    progress: Progress = SILENT, report_of: str = "",
 ) -> None:  # fmt: skip
     """Write a workbook: of each sheet its key, its title in the language in use, and what writes it.
 
-    `title` and `created` are what the file says of itself; `texts` stand on every printed page: at the head, in the
-    middle of it what holds for all numbers, and at the foot. Raises OSError if the file cannot be written;
-    CancelledError if `progress` was cancelled (no file is left).
+    `title` and `created` are what the file says of itself, `report_of` the workbook that it is a report of; `texts`
+    stand on every printed page: at the head, in the middle of it what holds for all numbers, and at the foot. Raises
+    OSError if the file cannot be written; CancelledError if `progress` was cancelled (no file is left).
     """
     head, conditions, foot = map(_plain, texts)  # a blank ends the size before each, whose digits would count to it
 
     def write(book: Any) -> None:
         book.set_properties({"title": title, "created": created})
+        if report_of:
+            book.set_custom_property(f"{REPORT_OF}{report_of[:200]}", "yes")
         pen = Pen(book, name_sheets({key: name for key, name, _write in sheets}), progress)
         pages = [book.add_worksheet(name) for name in pen.sheets.values()]
         for page, name, (_key, _title, write_own) in zip(pages, pen.sheets.values(), sheets, strict=True):
