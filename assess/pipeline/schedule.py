@@ -31,9 +31,10 @@ FILES = ("vertical file", "lateral file", "file cabinet", "filing cabinet", "sch
 ENOUGH, LITTLE = 0.8, 0.01
 """Shares of the falls that all entries avoid: what phase A reaches, and below what one is not worth it. Assumed."""
 PHASE_RULE = fill(
-    "A: the entries of highest class, until they avoid {enough:.0f} % of the falls that all entries avoid, and all "
-    "that open a way out that is blocked or fix a life-safety piece whose upper class is high or above. C: entries of "
-    "low class, or that avoid less than {little:.0f} %, that open no way out and are not life safety. B: the rest.",
+    "A: all that open a way out that is blocked or fix a life-safety piece whose upper class is high or above, and "
+    "entries of the highest class until A avoids {enough:.0f} % of the falls that all entries avoid. C: entries of low "
+    "class, or that avoid less than {little:.0f} %, that open no way out and are not life safety. B: the rest. Within "
+    "a phase by upper class, then by the falls that fixing avoids.",
     enough=100 * ENOUGH, little=100 * LITTLE,
 )  # fmt: skip
 """How entries are put into phases, for reports."""

@@ -22,7 +22,16 @@ from assess.report.xlsx.pen import name_sheets, refer
 from assess.route_results import RouteState
 from assess.settings import Settings
 from tests.nets.nets import find_shown
-from tests.recalculate import compare_formulas, libreoffice, needs_libreoffice, poison, same, stored_cells, write_report
+from tests.recalculate import (
+    compare_formulas,
+    evaluate,
+    libreoffice,
+    needs_libreoffice,
+    poison,
+    same,
+    stored_cells,
+    write_report,
+)
 from tests.report.routed import DOUBTED, assess_routed
 from tests.workbook.books import read_part
 from tests.workbooks import FLOORS, ITEMS, assessed, parts_of
@@ -263,3 +272,23 @@ def test_a_report_is_no_workbook_and_names_the_one_to_edit(tmp_path):
     book.custom_doc_props.append(StringProperty(name="Report of", value="assess: report of a.xlsx"))
     book.save(tmp_path / "own.xlsx")
     assert assess.read_inventory(tmp_path / "own.xlsx", strict=False).items
+
+
+def test_what_rolls_is_marked_and_counted_apart_and_no_edit_brings_it_into_a_class(tmp_path):
+    cart = {"item": "cart", "floor": "1", "breadth": 60, "height": 160, "mobile": "yes", "quantity": 3}
+    path = _report(tmp_path, [cart, {"item": "case", "floor": "1", "breadth": 40, "height": 180}])
+    book = openpyxl.load_workbook(path, data_only=True)
+    compare_formulas(path)
+    heads = [cell.value for cell in book["Items"][1]]
+    row = {head: cell.value for head, cell in zip(heads, book["Items"][2], strict=True)}
+    assert row["Basis"] == "rolls: not covered"
+    assert {row[name][0] for name in ("Class", "Class (formula)", "Class (OR)")} == {"◎"}
+    summary = {cells[0]: cells[1:] for cells in book["Summary"].iter_rows(values_only=True)}
+    assert (summary["rolls: not covered"][4], summary["all"][4]) == (3, 4)
+    assert sum(summary["formula (not simulated)"][:4]) == summary["formula (not simulated)"][4] == 1
+    at = {head: place for place, head in enumerate(heads, 1)}
+    edited = evaluate(path, [("Items", 2, at["Breadth [cm]"], 20)])
+    assert edited.get_value("Items", 2, at["Class"]) == "run again"
+    below = {edited.get_value("Summary", row, 1): row for row in range(1, 40)}
+    assert edited.get_value("Summary", below["formula (not simulated)"], 6) == 1
+    assert edited.get_value("Summary", below["run again"], 6) == 3
