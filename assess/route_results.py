@@ -89,7 +89,7 @@ MISSING: Mapping[str, str] = {
     "beyond_stairs": "segments from stairs to an exit (Routes)",
     "unconfirmed_building": "Period T1 or Height (Building)",
     "unconfirmed_motions": "motions of your own that reach the PFA and PFV of the floor",
-    "rolls": "a parking place out of the way, with castors that lock and a tether, of pieces that roll",
+    "rolls": "a parking place out of the way, or a tether and then Anchored (Items), of pieces that roll",
 }
 """What may be missing, by the keys of `MissingRow.what`, and the sheet to fill it in."""
 

@@ -202,3 +202,15 @@ def test_without_a_sheet_with_all_live_columns_and_with_an_unknown_type_a_workbo
         *(("Items", row, name, None) for row in (2, 3) for name in ("breadth", "height")),
     )
     assert [word for _, word, *_ in _by_row(_answer(book)).values()] == ["type?", "", "check"]
+
+
+def test_a_piece_that_rolls_has_the_word_in_place_of_a_class_and_gets_its_class_back(tmp_path):
+    cart = {"item": "cart", "floor": "1", "breadth": 60, "height": 160, "quantity": 3}
+    book = hold(write(tmp_path / "w.xlsx", [cart]))
+    before = _answer(book)
+    edit(book, ("Items", 2, "mobile", "yes"))
+    answer = _answer(book)
+    assert _classes(answer)[2][:2] == ("", "rolls")
+    assert answer["counts"] == {"low": 0, "medium": 0, "high": 0, "very_high": 0, "": 3}
+    edit(book, ("Items", 2, "mobile", "no"))
+    assert _classes(_answer(book)) == _classes(before)

@@ -229,7 +229,7 @@ def say_missing(missing: Sequence[MissingRow], *, has_cells: bool = True) -> str
             "furniture": _("list the furniture of the building"),
             "beyond_stairs": _("add the way from {names} to an exit in Routes", names=names),
             "unconfirmed_building": _("enter Storeys or the Period T1 in the sheet Building"),
-            "rolls": _("park {names} out of the way, with castors that lock and a tether", names=names),
+            "rolls": _("park {names} out of the way, or tether it and set Anchored to yes", names=names),
             "unconfirmed_motions": _("run with motions of your own that reach the PFA and PFV of the floor"),
         }[one.what]
         texts.append(f"{said} ({cells})" if cells and has_cells else said)
