@@ -57,7 +57,7 @@ def test_options_and_values():
         ("assess routes b.xlsx --scenario en", ["en-1998-1"]),
         ("assess run b.xlsx --formats pdf,h", ["pdf,html"]),
         ("assess run b.xlsx --formats pdf,xlsx,html,json,",
-         [f"pdf,xlsx,html,json,{one}" for one in ("annex", "csv", "docx", "npz", "parquet", "work", "all")]),
+         [f"pdf,xlsx,html,json,{one}" for one in ("annex", "work", "csv", "docx", "npz", "parquet", "all")]),
         ("assess new w.xlsx --language ", list(LANGUAGES)),
         ("assess new w.xlsx --units i", ["imperial"]),
         ("assess study t", ["table1", "table2", "table3"]),

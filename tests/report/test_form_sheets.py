@@ -3,6 +3,7 @@
 import openpyxl
 import pytest
 
+import assess
 from assess.i18n import load_catalogue, speaking
 from assess.report.content import Content
 from assess.report.say.orders import list_lines
@@ -10,7 +11,7 @@ from assess.report.xlsx.form_sheets import TOKYO, find_priority, rate
 from assess.settings import Settings
 from tests.recalculate import write_report
 from tests.report.routed import DOUBTED, assess_routed
-from tests.workbooks import ITEMS, assessed
+from tests.workbooks import FLOORS, ITEMS, UNVERIFIED, assessed, write_sheets
 
 PIECES = [
     *ITEMS,
@@ -78,17 +79,20 @@ def test_the_checklist_is_answered_where_the_workbook_tells_and_only_there(book,
     assert rows[12][2] in ("yes", "no"), "something may fall into a way out, or not"
 
 
+def _size_of_letters(page):
+    """Return the size [pt] at which letters of 11 pt are printed across A4; a stored width is 7 pixels a character."""
+    pixels = sum(7 * one.width * (one.max - one.min + 1) for one in page.column_dimensions.values())
+    room = 297 - 25.4 * (page.page_margins.left + page.page_margins.right)
+    return 11 * min(1, room / (pixels * 25.4 / 96))
+
+
 @pytest.mark.parametrize("language", ["en", "it"])
 def test_the_work_list_is_printed_at_eight_points_a_page_a_floor(verified_example, tmp_path, language):
     with speaking(load_catalogue(language)):
         write_report(verified_example, tmp_path / "r.xlsx")
         lines = list_lines(Content(verified_example))
     page = openpyxl.load_workbook(tmp_path / "r.xlsx").worksheets[1]
-    pixels = [7 * column.width + 5 for letter, column in page.column_dimensions.items() for _at in range(
-        column.min, column.max + 1)]  # fmt: skip
-    wide = sum(pixels) * 25.4 / 96
-    room = 297 - 25.4 * (page.page_margins.left + page.page_margins.right)
-    assert 11 * min(1, room / wide) >= 8, f"{wide:.0f} mm"
+    assert _size_of_letters(page) >= 8
     assert page.page_setup.fitToHeight == 0
     floors = [line.work.row.floor for line in lines]
     assert len(page.row_breaks.brk) == len(dict.fromkeys(floors)) - 1
@@ -96,3 +100,15 @@ def test_the_work_list_is_printed_at_eight_points_a_page_a_floor(verified_exampl
     total = page.cell(3 + len(lines), 6).value
     assert str(total).startswith("=IF(COUNT(F3:F")
     assert "market-street.xlsx" in page["A1"].value
+
+
+def test_with_costs_it_is_as_large_and_follows_another_unit_cost(tmp_path):
+    costs = [{"detail": "L-bracket to studs", "unit_cost": 85.5}]
+    path = write_sheets(tmp_path / "w.xlsx", {"Building": [{}], "Floors": FLOORS, "Items": PIECES, "Costs": costs})
+    write_report(assess.run(assess.read_inventory(path), UNVERIFIED), tmp_path / "r.xlsx")
+    page = openpyxl.load_workbook(tmp_path / "r.xlsx")["Work list"]
+    assert _size_of_letters(page) >= 8
+    heads = {cell.value: cell.column_letter for cell in page[2]}
+    row = next(at for at in range(3, 20) if page[f"{heads['Unit cost']}{at}"].value == 85.5)
+    unit, pieces = f"{heads['Unit cost']}{row}", f"{heads['Pieces']}{row}"
+    assert page[f"{heads['Cost']}{row}"].value == f'=IF({unit}="","",{pieces}*{unit})'
