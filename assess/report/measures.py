@@ -3,28 +3,18 @@
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import NamedTuple
 
 from assess.i18n import number
 from assess.units import FORCE, LENGTH, MASS, VELOCITY
 
-
-class _Customary(NamedTuple):
-    """A US unit for one of SI: its sign, how many of it one of SI is, and decimals shown in SI and in it."""
-
-    sign: str
-    factor: float
-    si_decimals: int
-    decimals: int
-
-
-_CUSTOMARY: Mapping[str, _Customary] = {
-    "cm": _Customary("in", LENGTH["cm"] / LENGTH["in"], 1, 1),
-    "m": _Customary("ft", LENGTH["m"] / LENGTH["ft"], 2, 2),
-    "kN": _Customary("lb", FORCE["kN"] / FORCE["lbf"], 2, 0),
-    "kg": _Customary("lb", MASS["kg"] / MASS["lb"], 0, 0),
-    "cm/s": _Customary("in/s", VELOCITY["cm/s"] / VELOCITY["in/s"], 1, 1),
+_CUSTOMARY: Mapping[str, tuple[str, float, int, int]] = {
+    "cm": ("in", LENGTH["cm"] / LENGTH["in"], 1, 1),
+    "m": ("ft", LENGTH["m"] / LENGTH["ft"], 2, 2),
+    "kN": ("lb", FORCE["kN"] / FORCE["lbf"], 2, 0),
+    "kg": ("lb", MASS["kg"] / MASS["lb"], 0, 0),
+    "cm/s": ("in/s", VELOCITY["cm/s"] / VELOCITY["in/s"], 1, 1),
 }
+"""US units for those of SI: sign, how many of it one of SI is, decimals shown in SI and in it."""
 _READER: ContextVar[str] = ContextVar("reader", default="SI")
 
 
@@ -45,19 +35,18 @@ def is_us() -> bool:
 
 def unit(name: str) -> str:
     """Return the reader's unit for one of SI: cm, m, kN, kg or cm/s; any other stays."""
-    return _CUSTOMARY[name].sign if is_us() and name in _CUSTOMARY else name
+    return _CUSTOMARY[name][0] if is_us() and name in _CUSTOMARY else name
 
 
 def convert(value: float, name: str) -> float:
     """Return a value of the unit `name` in the reader's unit."""
-    return value * _CUSTOMARY[name].factor if is_us() and name in _CUSTOMARY else value
+    return value * _CUSTOMARY[name][1] if is_us() and name in _CUSTOMARY else value
 
 
 def show(value: float, name: str) -> str:
     """Return a value of the unit `name` as the reader's number; lengths without zeros at the end and never as -0."""
-    found = _CUSTOMARY[name]
-    decimals = found.decimals if is_us() else found.si_decimals
-    shown = convert(value, name)
+    _sign, _factor, in_si, in_us = _CUSTOMARY[name]
+    decimals, shown = in_us if is_us() else in_si, convert(value, name)
     if name in ("cm", "m"):
         return number(round(shown, decimals) + 0.0, ".12g")
     least = 10**-decimals

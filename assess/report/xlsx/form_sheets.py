@@ -13,7 +13,7 @@ from typing import Any
 
 from assess.details import DETAILS
 from assess.i18n import LANGUAGES, Text, fill, gettext as _, load_catalogue
-from assess.report import words
+from assess.report import measures, words
 from assess.report.content import Content
 from assess.report.say import work as say_work
 from assess.report.say.orders import list_lines
@@ -176,5 +176,6 @@ def write_tokyo(pen: Pen, page: Any, content: Content) -> None:
     ]
     rule = _("The items are those of the Tokyo Fire Department's checklist for offices, in our own words; they are "
              "answered from the workbook where that can tell. yes: as it should be, as far as the workbook lists the "
-             "furniture; no: see the rows; not known: look. Tall: from {tall:g} cm, assumed.", tall=TALL)  # fmt: skip
+             "furniture; no: see the rows; not known: look. Tall: from {tall}, assumed.",
+             tall=measures.say(TALL, "cm"))  # fmt: skip
     _write_form(pen, page, rule, columns, list(zip(range(1, len(TOKYO) + 1), TOKYO, answers, strict=True)))
