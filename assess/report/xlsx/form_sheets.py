@@ -17,7 +17,7 @@ from assess.report import measures, words
 from assess.report.content import Content
 from assess.report.say import work as say_work
 from assess.report.say.orders import list_lines
-from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines
+from assess.report.xlsx.pen import COUNT, Column, Pen
 from assess.results import ROLLS, ItemResult, ItemRow, count_pieces
 from assess.risk import RiskClass
 from assess.text import natural_key
@@ -92,9 +92,7 @@ def _say_notes(own: Sequence[ItemResult]) -> str:
 def _write_form(pen: Pen, page: Any, rule: str, columns: Sequence[Column], rows: Sequence[Any]) -> None:
     """Write a table, and below it the rule that it goes by."""
     below = pen.listing(page, columns, rows) + 1
-    page.merge_range(below, 0, below, len(columns) - 1, "", pen.style("text"))
-    page.set_row(below, LINE * count_lines(rule, sum(one.width for one in columns)))
-    pen.put(page, below, 0, rule, pen.style("text"))
+    pen.paragraph(page, below, rule, [one.width for one in columns])
 
 
 # ---------------------------------------------------------------- the checklist of 21 items

@@ -125,6 +125,12 @@ class Pen:
             text = str(value)
             page.write_string(row, column, text if len(text) <= LONGEST else f"{text[:LONGEST]}…", form)
 
+    def paragraph(self, page: Any, row: int, text: str, widths: Sequence[int]) -> None:
+        """Write a text across the columns of a sheet, in a row that is high enough for it."""
+        page.merge_range(row, 0, row, len(widths) - 1, "", self.style("text"))
+        page.set_row(row, LINE * count_lines(text, sum(widths)))
+        self.put(page, row, 0, text, self.style("text"))
+
     def heads(self, page: Any, labels: Sequence[str], widths: Sequence[int], row: int = 0) -> None:
         """Write the heading row of a table, and set its columns' widths where it begins a sheet."""
         page.set_row(row, row_height(labels, widths))

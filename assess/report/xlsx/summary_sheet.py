@@ -30,7 +30,7 @@ from assess.report.xlsx.items_sheet import (
     order_number,
     say_inputs_that_settle,
 )
-from assess.report.xlsx.pen import CHANCE, HEAD, LINE, Pen, count_lines, refer, row_height
+from assess.report.xlsx.pen import CHANCE, HEAD, Pen, refer, row_height
 from assess.results import CANNOT_ROCK, ROLLS, ItemResult, count_pieces
 from assess.risk import RiskClass
 from assess.workbook.formulas import OUTSIDE
@@ -101,12 +101,9 @@ def write_summary(pen: Pen, page: Any, content: Content) -> None:
         tables[basis], row = row, row + 4 + len(content.floors)
     plan = _Plan(pen, page, content, areas, bases, top, lists, tables)
     for at, (text, formula) in enumerate(lines, 1):
-        page.merge_range(at, 0, at, LAST, "", pen.style("text"))
-        page.set_row(at, LINE * count_lines(text, sum(WIDTHS)))
+        pen.paragraph(page, at, text, WIDTHS)
         if formula:
             page.write_formula(at, 0, f"={formula}", pen.style("text"), text)
-        else:
-            pen.put(page, at, 0, text, pen.style("text"))
     row, results = top, content.results
     _write_heads(plan, row, _("Building"), [_("pieces")])  # a row a basis, then what has no class
     for row, basis in enumerate(bases, top + 1):

@@ -15,7 +15,7 @@ from assess.report import words
 from assess.report.content import Content
 from assess.report.say import work as say_work
 from assess.report.say.orders import Line, list_lines, say_phases
-from assess.report.xlsx.pen import COUNT, LINE, Column, Pen, count_lines, row_height
+from assess.report.xlsx.pen import COUNT, Column, Pen, row_height
 from assess.schedule_results import Schedule
 from assess.text import natural_key
 
@@ -44,7 +44,7 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
     as_run = _("As run on {date}: this list does not follow what is edited in Items and Floors. To bring it up to "
                "date, make the same changes in {file} and run it again.", date=content.date,
                file=content.run.provenance.workbook)  # fmt: skip
-    _write_text(pen, page, 0, as_run, widths)
+    pen.paragraph(page, 0, as_run, widths)
     pen.heads(page, [one.label for one in columns], widths, HEAD)
     if not lines:
         none = _("No free-standing piece reaches medium, and no route needs one fixed.")
@@ -78,14 +78,8 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
     texts = [*say_work.say_effect_of_all(schedule), *say_phases(lines), _(say_work.ORDER), _(say_work.CHECKS),
              _(say_work.DISAGREEMENT), *say_work.list_marks(schedule)]  # fmt: skip
     for row, text in enumerate(texts, below + 2):
-        _write_text(pen, page, row, text, widths)
+        pen.paragraph(page, row, text, widths)
     _write_changes(pen, page, below + 3 + len(texts), schedule)
-
-
-def _write_text(pen: Pen, page: Any, row: int, text: str, widths: Sequence[int]) -> None:
-    page.merge_range(row, 0, row, len(widths) - 1, "", pen.style("text"))
-    page.set_row(row, LINE * count_lines(text, sum(widths)))
-    pen.put(page, row, 0, text, pen.style("text"))
 
 
 def _list_columns(content: Content) -> list[Column]:
