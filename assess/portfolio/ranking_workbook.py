@@ -15,7 +15,6 @@ from assess.portfolio import city_words as say
 from assess.portfolio.city import BUILDING_RULE, TYPE_RULE, City, Group, Row
 from assess.portfolio.city_map import find_share, sign_of_class
 from assess.progress import SILENT, Progress
-from assess.report import words
 from assess.report.report_options import ReportOptions
 from assess.report.xlsx.pen import CHANCE, COUNT, Column, Pen, write_sheets
 from assess.risk import RiskClass
@@ -248,7 +247,7 @@ def _list_notes(city: City) -> Listing:
     )  # fmt: skip
     texts = [
         _(BUILDING_RULE), _(TYPE_RULE), rule, *(f"{label}: {value}" for label, value in say.list_basis(city)),
-        *say.list_method(city), *say.list_references(city), words.marks(),
+        *say.list_method(city), *say.list_references(city),
     ]  # fmt: skip
     return [Column(_("Note"), 140, str)], texts
 

@@ -50,11 +50,6 @@ class Counts:
         return self.free + self.unconfirmed + self.by_formula + self.rolls + self.anchored
 
     @property
-    def risky(self) -> int:
-        """Pieces of high and very high class."""
-        return self.by_class[RiskClass.HIGH] + self.by_class[RiskClass.VERY_HIGH]
-
-    @property
     def has_apart(self) -> bool:
         """Whether pieces are counted apart, as they are unconfirmed, not simulated, or roll."""
         return bool(self.unconfirmed or self.by_formula or self.rolls)

@@ -124,15 +124,11 @@ def badge(one: ItemResult) -> Words:
 
 
 def mark(one: ItemResult) -> Runs:
-    """Return the class of a piece as a badge, ``◇ medium to high`` where it could be a higher one."""
+    """Return the class of a piece as a badge, where there is no room for more words."""
     if one.is_anchored:
         doubt = note(words.say_bracket(one)) if words.has_doubtful_bracket(one) else ""
         return join_words((Span(words.apart_label("anchored"), "badge anchored"), doubt))
-    highest = words.find_highest(one)
-    label = words.class_label(one)
-    if highest != one.adopted.risk and not one.apart:
-        label = _("{low} to {high}", low=label, high=words.risk_word(highest))
-    return [Span(label, f"badge {words.style_name(one)}")]
+    return [Span(words.class_span(one), f"badge {words.style_name(one)}")]
 
 
 def flags(names: Iterable[str]) -> Words:

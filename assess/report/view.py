@@ -81,18 +81,6 @@ class View:
         """Tell whether a section is shown."""
         return any(part.key == key for part in self.parts)
 
-    @property
-    def marks(self) -> str:
-        """The legend of the marks as a sentence, "" where nothing was simulated."""
-        return f"{words.marks()}." if self.content.verified.done else ""
-
-    @property
-    def legend(self) -> list[str]:
-        """That legend, and the one of the signs of what is counted apart."""
-        signs = _("{unconfirmed} unconfirmed, {by_formula} by formula only: counted apart",
-                  unconfirmed=words.UNCONFIRMED, by_formula=words.BY_FORMULA)  # fmt: skip
-        return [self.marks, f"{signs}." if self.content.total.has_apart else ""]
-
     @cached_property
     def photos(self) -> Photos:
         """The photos that the report embeds."""

@@ -399,23 +399,17 @@ def was_lowered(risk: str) -> str:
     return _("lowered by simulation (formula: {risk})", risk=risk)
 
 
-COULD_BE, LOWERED = "?", "↓"
-"""Marks next to the symbol of a class where there is no room for words."""
 UNCONFIRMED, BY_FORMULA, ANCHORED, ROLLING = "◌", "ƒ", "⚓", "◎"
 """Signs in place of the symbol of a class, of what stands outside the classes."""
 APART_FILL, ANCHORED_FILL, INK = "#ffffff", "#e3e3e3", "#1c1c1c"
 """Their colours in bars and on plans."""
 
 
-def marks() -> str:
-    """Return the legend of the marks, without a full stop."""
-    return _("{could_be} could be a higher class; {lowered} lowered by simulation", could_be=COULD_BE, lowered=LOWERED)
-
-
-def class_marks(one: ItemResult) -> str:
-    """Return the marks that stand next to the symbol of a class."""
-    could_be = COULD_BE if find_highest(one) != one.adopted.risk else ""
-    return could_be + (LOWERED if one.adopted.lowered_from is not None and not one.apart else "")
+def class_span(one: ItemResult) -> str:
+    """Return the class of a piece, ``◇ medium to high`` where it could be a higher one."""
+    highest, label = find_highest(one), class_label(one)
+    is_one = one.apart or highest == one.adopted.risk
+    return label if is_one else _("{low} to {high}", low=label, high=risk_word(highest))
 
 
 def class_label(one: ItemResult) -> str:

@@ -102,16 +102,6 @@ class Verified:
         return _("Partly simulated") if self.left else _("Simulated"), "; ".join(texts)
 
     @property
-    def footer(self) -> str:
-        """The foot of every page, but for what `list_conditions` adds."""
-        if not self.done:
-            return f"{say_scenario(self.run)} {self.sentence}"
-        extent = ngettext("Simulated: {done:,} of {n:,} row; {interval}.",
-                          "Simulated: {done:,} of {n:,} rows; {interval}.", len(self.run), done=len(self.done),
-                          interval=say_range(self.run))  # fmt: skip
-        return f"{say_scenario(self.run)} {extent}"
-
-    @property
     def interval(self) -> str:
         """What the range covers, what would narrow it, and which percentages have none; without a full stop."""
         if not self.done:

@@ -121,7 +121,6 @@ def build_lists(view: View) -> blocks.Section:
     """Return one line a row, then the results of every method."""
     texts = [
         _("One line for each row; longer texts are cut, the Excel report has all of them."),
-        view.marks,
         _("The first {n:,} rows; the Excel report lists all.", n=MOST_LINES) if len(view.results) > MOST_LINES else "",
     ]
     heading = blocks.Heading(_("Results of every method for each row under its governing motion"))
@@ -136,13 +135,13 @@ def list_lines(results: Sequence[ItemResult], columns: Sequence[PageColumn]) -> 
     lines: list[blocks.Words] = []
     for one in results[:MOST_LINES]:
         text = "  ".join(_put(column, (column.line or column.text)(one)) for column in shown)
-        label, marks = words.class_label(one), words.class_marks(one)
+        label = words.class_span(one)
         if one.is_anchored:
-            lines.append(f"{text}  {words.apart_label('anchored')} ({label}{marks})")
+            lines.append(f"{text}  {words.apart_label('anchored')} ({label})")
         elif one.apart:
             lines.append(f"{text}  {label} ({words.apart_note(one)})")
         else:
-            lines.append([f"{text}  ", blocks.Span(f"{label}{marks}", f"badge {words.style_name(one)}")])
+            lines.append([f"{text}  ", blocks.Span(label, f"badge {words.style_name(one)}")])
     a_page = 58
     return [blocks.Listing(head, lines[at : at + a_page]) for at in range(0, len(lines), a_page)]
 

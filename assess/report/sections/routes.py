@@ -408,13 +408,13 @@ def _list_beside(view: View, columns: Sequence[PageColumn]) -> list[blocks.Block
                 rows.append(blocks.Row([*cells, none, flags(one.flags)]))
                 continue
             piece = view.results[near.item_index]
-            sign = "" if piece.is_anchored else f" {piece.adopted.risk.symbol}{words.class_marks(piece)}"
+            sign = "" if piece.is_anchored else f" {piece.adopted.risk.symbol}"
             anchored = words.apart_label("anchored") if piece.is_anchored else ""
             rows.append(blocks.Row([
                 *cells, *_build_row(columns, near, shown).cells, f"{words.chance(piece)}{sign}",
                 blocks.join_words((anchored, flags(near.flags))),
             ]))  # fmt: skip
-        found.append(blocks.table(heads, rows, "beside", f"{caption} {view.marks}".rstrip(), is_named=True))
+        found.append(blocks.table(heads, rows, "beside", caption, is_named=True))
         found += say_left(len(beside) - MOST_BESIDE)
     else:
         found.append(blocks.Paragraph(_("No piece reaches any segment.")))
