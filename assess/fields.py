@@ -20,7 +20,7 @@ from assess.model import ANCHORED, AXES, COST_PER, IMPORTANCE, SIZES_FROM
 from assess.results import BASES, BRANCHES, ItemResult, ItemRow, Results
 from assess.risk import RiskClass
 from assess.route_results import Chance, PieceRef, RoomRow, RouteRow, SegmentRow
-from assess.schedule_results import PHASES, PhaseRow, ScheduleRow, State, WorkRow
+from assess.schedule_results import PHASES, ScheduleRow, State, WorkRow
 from assess.table import DATA, EVERYWHERE, FILES, Field, Kind, Table, Where
 
 
@@ -504,15 +504,9 @@ ENTRY_FIELDS = (
 """One entry of the schedule."""
 
 PHASE_FIELDS = (
-    _work("phase", label=fill("Phase"), choices=PHASES),
-    _work("entries", "count", fill("Entries")),
-    _work("pieces", "count", fill("Pieces")),
-    _work("places", "count", fill("Places"), help="Rooms in which work is to be done."),
-    _work("falls_avoided", "number", fill("Falls avoided"), format="0.000"),
-    _work("falls_left", "number", fill("Falls left"), format="0.000",
-        help="Expected number once the phase and those before it are done; phase C is never done."),
-    _work("cost", "number", fill("Cost"), is_optional=True, help="Of what is known; null where nothing is."),
-    _work("hours", "number", fill("Hours"), help="Of work: assumed."),
+    _work("phase", choices=PHASES), *(_work(key, "count") for key in ("entries", "pieces", "places")),
+    *(_work(key, "number") for key in ("falls_avoided", "falls_left", "hours")),
+    _work("cost", "number", is_optional=True, help="Of what is known; null where nothing is."),
 )  # fmt: skip
 """One phase of the schedule; what is to be expected after it stands beside."""
 
@@ -545,7 +539,7 @@ STATE_FIELDS = (
 
 def schedule_fields(row: type) -> Mapping[str, Field]:
     """Return the fields of one of the rows of `assess.schedule_results` by their keys."""
-    tables = {WorkRow: WORK_FIELDS, ScheduleRow: ENTRY_FIELDS, State: STATE_FIELDS, PhaseRow: PHASE_FIELDS}
+    tables = {WorkRow: WORK_FIELDS, ScheduleRow: ENTRY_FIELDS, State: STATE_FIELDS}
     return {one.key: one for one in tables[row]}
 
 

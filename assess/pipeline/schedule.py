@@ -39,6 +39,8 @@ PHASE_RULE = fill(
 )  # fmt: skip
 """How entries are put into phases, for reports."""
 _A, _B, _C = PHASES
+CLEAR = "clear"
+"""The detail that fixes nothing: such a piece is out of the way, but may still fall."""
 
 
 class Planned(NamedTuple):
@@ -83,7 +85,8 @@ def build_schedule(
             continue
         if phase != _C:
             held.update(index for one in own for index in one.item_indices)
-            after, last = _sum_up(rows, evaluate(frozenset(held)), held), own[-1].falls_left
+            fixed = {at for at in held if choose_detail(results.item_rows[at]) != CLEAR}
+            after, last = _sum_up(rows, evaluate(frozenset(held)), fixed), own[-1].falls_left
         priced = [work.cost for one in own for work in one.works if work.cost is not None]
         places = {(work.floor, work.room or work.items) for one in own for work in one.works}
         row_of_phase = PhaseRow(
@@ -99,7 +102,7 @@ def build_schedule(
 def plan(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[Planned]:
     """Return the entries of the schedule by `PHASE_RULE`: by phase, upper class, and what each avoids."""
     entries = [
-        Planned(_B, one, sum(map(count_falls, one)), sum(map(_count_at_most, one) if one[0].apart else ()))
+        Planned(_B, one, *(sum(_count_avoided(each) for each in one if bool(each.apart) == at) for at in (False, True)))
         for one in _group_entries(rows, routes)
     ]
     entries.sort(key=lambda one: -one.avoided - one.at_most)
@@ -157,6 +160,11 @@ def _is_safety(one: ItemResult) -> bool:
 
 def _count_at_most(one: ItemResult) -> float:
     return one.adopted.probability * one.item.quantity
+
+
+def _count_avoided(one: ItemResult) -> float:
+    """Return how many falls fixing a row avoids: none of what is only kept out of the way."""
+    return 0.0 if choose_detail(one.item) == CLEAR else _count_at_most(one)
 
 
 def count_falls(one: ItemResult) -> float:

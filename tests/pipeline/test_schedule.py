@@ -239,3 +239,20 @@ def test_each_piece_gets_a_fix_that_it_can_have(given, detail):
     piece = {"floor": "1", "breadth": 30, "width": 60, "height": 190, "item": "a", "room": "A"}
     _, schedule, _ = schedule_of([piece | given], Catalogue=types)
     assert [work.detail for row in schedule.rows for work in row.works] == [detail]
+
+
+def test_what_is_kept_out_of_the_way_blocks_nothing_but_may_still_fall():
+    stand = {"floor": "1", "breadth": 30, "width": 30, "height": 175, "type": "Coat stand", "route": "Way"}
+    places = [
+        {"place": "Office", "kind": "room", "floor": "1", "x": 0, "y": 0},
+        {"place": "Street", "kind": "exit", "floor": "1", "x": 9, "y": 0},
+    ]
+    way = {"route": "Way", "segment": "hall", "floor": "1", "start": "Office", "end": "Street", "clear_width": 1.8}
+    found, schedule, _ = schedule_of(
+        [stand | {"item": "stand", "room": "A"}], Places=places, Routes=[way], Catalogue=[{"type": "Coat stand"}]
+    )
+    (row,) = schedule.rows
+    assert (row.phase, row.works[0].detail, row.falls_avoided) == ("A", "clear", 0)
+    assert [dict(one.routes) for one in (schedule.before, schedule.after)] == [{"blocked": 1}, {"open": 1}]
+    assert schedule.after.falls == schedule.before.falls == found["stand"].adopted.probability > 0
+    assert schedule.after.anchored == 0
