@@ -20,6 +20,7 @@ const FORMATS = {
   xlsx: () => t("Report with live formulas (Excel)"),
   docx: () => t("Report for the client (Word)"),
   annex: () => t("Annex with all details (PDF)"),
+  work: () => t("Work orders by room, with stickers (PDF)"),
   csv: () => t("Table of the pieces (CSV)"),
   json: () => t("All results, for other programs (JSON)"),
 };
