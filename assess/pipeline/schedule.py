@@ -18,7 +18,7 @@ from assess.model import Cost, Inventory
 from assess.pipeline.anchors import WHAT_IF
 from assess.results import ROLLS, ItemResult, ItemRow, Results, count_pieces, sum_falls
 from assess.risk import RiskClass, find_ends
-from assess.route_results import RouteRow, RouteState, RouteTables
+from assess.route_results import BLOCKED_FROM, RouteFixRow, RouteRow, RouteState, RouteTables
 from assess.schedule_results import PHASES, PhaseRow, Schedule, ScheduleRow, State, WorkRow
 from assess.text import natural_key
 
@@ -31,10 +31,10 @@ FILES = ("vertical file", "lateral file", "file cabinet", "filing cabinet", "sch
 ENOUGH, LITTLE = 0.8, 0.01
 """Shares of the falls that all entries avoid: what phase A reaches, and below what one is not worth it. Assumed."""
 PHASE_RULE = fill(
-    "A: all that open a way out that is blocked or fix a life-safety piece whose upper class is high or above, and "
-    "entries of the highest class until A avoids {enough:.0f} % of the falls that all entries avoid. C: entries of low "
-    "class, or that avoid less than {little:.0f} %, that open no way out and are not life safety. B: the rest. Within "
-    "a phase by upper class, then by the falls that fixing avoids.",
+    "A: all without which a way out stays blocked, life-safety pieces whose upper class is high or above, and entries "
+    "of the highest class until A avoids {enough:.0f} % of the falls that all entries avoid. C: entries of low class, "
+    "or that avoid less than {little:.0f} %, that open no way out and are not life safety. B: the rest. Within a phase "
+    "by upper class, then by the falls that fixing avoids.",
     enough=100 * ENOUGH, little=100 * LITTLE,
 )  # fmt: skip
 """How entries are put into phases, for reports."""
@@ -109,7 +109,7 @@ def plan(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[Planned
     entries.sort(key=lambda one: (APART.index(one.pieces[0].apart), -max(each.adopted.upper for each in one.pieces)))
     opening = {fix.item_index for one in routes for fix in one.fixes}
     blocked = [one for one in routes if one.state == RouteState.BLOCKED and one.is_fixed]
-    urgent = {fix.item_index for one in blocked for fix in one.fixes}
+    urgent = {fix.item_index for one in blocked for fix in one.fixes if _is_still_blocked(one, fix)}
     total = sum(one.avoided for one in entries)
 
     def is_needed(one: Planned) -> bool:
@@ -148,6 +148,12 @@ def plan_checks(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[
         is_near = any(_is_safety(one) or one.routes or one.item.index in opening for one in own)
         found.append(Planned(_A if is_high or is_near else _B, own, 0.0, sum(map(_count_at_most, own))))
     return sorted(found, key=lambda one: (one.phase, _rolls(one.pieces[0]), -one.at_most))
+
+
+def _is_still_blocked(one: RouteRow, fix: RouteFixRow) -> bool:
+    """Return whether a route is blocked before a step; always, where it is so by the recorded motion alone."""
+    is_by_chance = one.blocked is not None and one.blocked.probability >= BLOCKED_FROM
+    return fix.left + fix.gain >= BLOCKED_FROM or not is_by_chance
 
 
 def _rolls(one: ItemResult) -> bool:

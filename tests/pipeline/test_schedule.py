@@ -256,3 +256,20 @@ def test_what_is_kept_out_of_the_way_blocks_nothing_but_may_still_fall():
     assert [dict(one.routes) for one in (schedule.before, schedule.after)] == [{"blocked": 1}, {"open": 1}]
     assert schedule.after.falls == schedule.before.falls == found["stand"].adopted.probability > 0
     assert schedule.after.anchored == 0
+
+
+def test_of_a_blocked_way_those_steps_are_done_now_that_end_that_and_later_those_that_open_it():
+    """Each piece falls with a chance of 0.16, and blocks alone: any of three in 0.41, of two in 0.297."""
+    lone = {"floor": "G", "breadth": 35, "width": 60, "height": 180, "route": "Way"}
+    items = [lone | {"item": name, "room": name} for name in "abc"]
+    places = [
+        {"place": "Office", "kind": "room", "floor": "G", "x": 0, "y": 0},
+        {"place": "Street", "kind": "exit", "floor": "G", "x": 9, "y": 0},
+    ]
+    way = {"route": "Way", "segment": "hall", "floor": "G", "start": "Office", "end": "Street", "clear_width": 1.8}
+    many = TALL | {"item": "many", "room": "M", "quantity": 200}
+    found, schedule, _ = schedule_of([*items, many], Places=places, Routes=[way])
+    (route,) = found.route_tables.routes
+    assert [fix.left + fix.gain for fix in route.fixes] == pytest.approx([0.411, 0.297, 0.162], abs=5e-4)
+    assert rows_of(found) == [("A", "many"), ("A", "a"), ("B", "b"), ("B", "c")]
+    assert [dict(one.after.routes) for one in schedule.phases] == [{"doubtful": 1}, {"open": 1}]
