@@ -186,7 +186,7 @@ def describe_result(results: "Results") -> Iterator[str]:
     from assess.report.counts import count
     from assess.report.say import route as say_route
     from assess.report.say.piece import list_apart, list_ways_to_settle
-    from assess.report.say.simulation import Verified, list_conditions, say_assumed, say_sensitivity
+    from assess.report.say.simulation import Verified, list_conditions, say_assumed, say_effects
     from assess.risk import RiskClass
 
     rows = tuple(results)
@@ -220,5 +220,5 @@ def describe_result(results: "Results") -> Iterator[str]:
     verified = Verified(results, rows).sentence if results.has_simulated else "Not simulated."
     yield f"Chance of overturning in an earthquake like this one, not per year. {verified}"
     yield from (f"{text}." for text in list_conditions(results))
-    if assumed := " ".join(filter(None, (say_assumed(results), say_sensitivity(results, rows)))):
+    if assumed := " ".join(filter(None, (say_assumed(results), say_effects(results, rows)))):
         yield assumed

@@ -1,7 +1,7 @@
 """What is said of the simulation: what it rests on, what was drawn, and what it changed."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from assess.i18n import fill, gettext as _, ngettext, number
 from assess.model import SCANNED
@@ -9,7 +9,6 @@ from assess.report import words
 from assess.report.provenance import say_reference
 from assess.report.say.ground import describe_suite, list_narrowing, name_source, say_signs
 from assess.results import EarthquakeDraws, ItemResult, Results, count_pieces
-from assess.risk import RiskClass, classify
 from assess.settings import AUTO
 
 INTERVAL = fill("the sampling interval covers the number of draws only")
@@ -418,45 +417,13 @@ def list_effects(results: Results, rows: Sequence[ItemResult]) -> list[tuple[str
     return effects
 
 
-def say_sensitivity(results: Results, rows: Sequence[ItemResult]) -> str:
-    """Return how many simulated pieces would have another class under other assumptions; "" where none was simulated.
-
-    Compared are the classes by the chance under the governing motion: with each other dispersion of the motions that
-    was tried, none below the scatter that a published relation gives; where uncertainty was left out
-    (`Settings.ideal`), with it.
-    """
-    counted = [one for one in rows if not one.is_anchored and one.adopted.is_simulated]
-    simulated = [(one, found) for one in counted if (found := one.governing.simulation) is not None]
-    origin = results.provenance
-    if results.settings.ideal:
-        changes = [(one, found.ideal.probability, found.probability) for one, found in simulated if found.ideal]
-        return _("In an earthquake like this one (dispersion {dispersion}), {changes}.",
-                 dispersion=number(origin.uncertainty.motion, ".3g"),
-                 changes=_say_changes(changes)) if simulated else ""  # fmt: skip
-    simulated = [(one, found) for one, found in simulated if found.tried]  # what is drawn scatters by itself
-    least = origin.shaking.scatter if origin.shaking else origin.site_ground.dispersion if origin.site_ground else 0.0
-    return " ".join(
-        _("With a dispersion of {dispersion}, {changes}.", dispersion=number(dispersion, ".3g"),
-          changes=_say_changes([(one, found.probability, found.tried[dispersion]) for one, found in simulated]))
-        for dispersion in (simulated[0][1].tried if simulated else ())
-        if dispersion >= least and dispersion != origin.uncertainty.motion
-    )  # fmt: skip
-
-
-def _say_changes(changes: Iterable[tuple[ItemResult, float, float]]) -> str:
-    up = down = 0
-    for one, now, then in changes:
-        least = RiskClass.HIGH if one.fell_in_record else RiskClass.LOW
-        change = max(classify(then) or least, least) - max(classify(now) or least, least)
-        up += one.item.quantity * (change > 0)
-        down += one.item.quantity * (change < 0)
-    if not up and not down:
-        return _("no piece would change class")
-    higher = ngettext("{n:,} piece would be in a higher class", "{n:,} pieces would be in a higher class", up)
-    lower = ngettext("{n:,} piece would be in a lower class", "{n:,} pieces would be in a lower class", down)
-    if up and down:
-        return _("{higher} and {lower}", higher=higher, lower=lower)
-    return higher if up else lower
+def say_effects(results: Results, rows: Sequence[ItemResult]) -> str:
+    """Return what the expected falls would be if it were otherwise than assumed; "" where that is not known."""
+    effects = [
+        _("{what}: {low} to {high}", what=what, low=words.round_falls(low), high=words.round_falls(high))
+        for what, low, high in list_effects(results, rows)
+    ]
+    return _("Expected falls by {effects}.", effects="; ".join(effects)) if effects else ""
 
 
 BOORE = (

@@ -11,7 +11,7 @@ from assess.report.provenance import say_reference
 from assess.report.say import ground
 from assess.report.say.piece import describe
 from assess.report.say.route import say_risk
-from assess.report.say.simulation import WILSON, list_references, say_assumed, say_sensitivity
+from assess.report.say.simulation import WILSON, list_references, say_assumed
 from assess.report.view import Part, View, say_left
 from assess.results import ItemResult, MotionRow
 from assess.risk import classify
@@ -120,14 +120,13 @@ def build_approach(view: View) -> blocks.Section:
                      "what is unknown about the earthquake or the furniture. On assumed motion it is the chance in the "
                      "slower and in the faster third of the drawn motions: what is not known of the ground and of the "
                      "building.")  # fmt: skip
-        sensitivity = say_sensitivity(run, view.results)
-        parts.append((_("What was assumed uncertain"), (say_assumed(run), sensitivity, interval)))
+        parts.append((_("What was assumed uncertain"), (say_assumed(run), interval)))
     if run.has_routes:
         evaluated = _("A route is evaluated by the chance that fallen pieces leave less than the required clear width "
                       "on one of its segments; pieces that fall in the same draw count together. The limit on that "
                       "chance is {risk}. No published rule exists; the rule used here is described in the annex.",
                       risk=say_risk(run.route_tables.risk))  # fmt: skip
-        parts.append((_("Evacuation routes"), (evaluated, "", "")))
+        parts.append((_("Evacuation routes"), (evaluated,)))
     for heading, texts in parts:
         found += [blocks.Heading(heading), *(blocks.Paragraph(text) for text in texts if text)]
     keys = {run.formula.key, *({run.simulation.key} if verified.done else ())}

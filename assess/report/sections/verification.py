@@ -10,13 +10,11 @@ from assess.i18n import fill, gettext as _, ngettext, number
 from assess.report import blocks, words
 from assess.report.figures.motion_figures import draw_traced
 from assess.report.figures.risk_map import draw_contours
-from assess.report.page_columns import build_table
 from assess.report.say import annual
 from assess.report.say.annual import AnnualLine
-from assess.report.say.piece import by_chance
 from assess.report.say.simulation import count_rows, describe_trials, list_misfits, name_some
 from assess.report.view import Part, View, say_left
-from assess.results import EnsembleRow, ItemResult, MotionRow, count_pieces
+from assess.results import EnsembleRow, MotionRow, count_pieces
 from assess.risk import RiskClass
 
 MOST, MISFITS = 60, 6
@@ -40,7 +38,6 @@ def build(view: View) -> blocks.Section:
         blocks.Bullets(list(_list_found(view))),
         *_list_motions(view),
         *view.once("verification", lambda: list(draw_traced(view.content, view.progress))),
-        *_list_changes(view),
     ])  # fmt: skip
 
 
@@ -131,36 +128,6 @@ def _peak_ratio(peaks: Sequence[float], factors: Sequence[float], floor: float |
     ratios = [peak * factor / floor for peak, factor in zip(peaks, factors, strict=True)]
     mean = statistics.fmean(ratios)
     return _ratio(mean, statistics.pstdev(ratios) / mean)
-
-
-def _list_changes(view: View) -> list[blocks.Block]:
-    verified = view.content.verified
-
-    def by_change(one: ItemResult) -> tuple[object, ...]:
-        return -abs(one.adopted.risk - one.formula_class), *by_chance(one)
-
-    changed = [*sorted(verified.raised, key=by_change), *sorted(verified.lowered, key=by_change)]
-    fell = sorted(verified.fell, key=by_chance)
-    found: list[blocks.Block] = [blocks.Heading(_("Classes lowered or raised"))]
-    if changed:
-        text = ngettext("{n:,} row, raised ones and the largest changes first.",
-                        "{n:,} rows, raised ones and the largest changes first.", len(changed))  # fmt: skip
-        if len(changed) > LISTED:
-            text += " " + _("The first {listed} are shown; the Excel report lists all.", listed=LISTED)
-        columns = view.columns(
-            "item", "floor", "description", "quantity", "formula", "ideal", "adopted_probability", "adopted_class"
-        )
-        found += [blocks.Paragraph(text, "lead-in"), build_table(columns, changed[:LISTED], "pieces")]
-    else:
-        found.append(blocks.Paragraph(_("None: every confirmed class is that of the formula.")))
-    found.append(blocks.Heading(_("Pieces that overturn under the record itself")))
-    if not fell:
-        return [*found, blocks.Paragraph(_("None of the simulated pieces, as far as a record is known."))]
-    if len(fell) > LISTED:
-        text = _("The first {listed} of {rows}, the worst first; the Excel report lists all.", listed=LISTED,
-                 rows=words.plural(len(fell), "row"))  # fmt: skip
-        found.append(blocks.Paragraph(text, "lead-in"))
-    return [*found, build_table(view.columns("risky"), fell[:LISTED], "pieces")]
 
 
 def build_contours(view: View) -> blocks.Section:
