@@ -13,8 +13,11 @@ from assess.report.content import Content
 from assess.report.say import work as say_work
 from assess.results import ItemResult
 
-PHASES = {"A": fill("now"), "B": fill("with the next works"), "C": fill("listed only, not ordered")}
-"""What each phase means; pieces that are anchored, or roll, have none: they are only looked at, or parked."""
+PHASES = {
+    "A": fill("A: now"), "B": fill("B: with the next works"), "C": fill("C: not worth it on its own, listed only"),
+    "": fill("Anchors to check, and what rolls"),
+}  # fmt: skip
+"""The phases as they are called; pieces that are anchored, or roll, have none: they are looked at, or parked."""
 SHORT = 30
 """Characters of the building's name on a sticker."""
 
@@ -64,11 +67,17 @@ class Line:
     def say_effect(self, total: float) -> str:
         """Return what its entry takes away of all expected falls, `total`; "" of all its lines but the first."""
         entry = self.work.entry.row
+        if self.work.results[0].apart == "rolls":
+            return _("rolls: in no chance")
         if not self.work.is_first or not (entry.falls_avoided or entry.falls_at_most):
             return ""
         if entry.falls_avoided:
-            return _("{n} of {total} falls", n=_few(entry.falls_avoided), total=words.fixed(total, 1))
-        return _("at most {n} falls", n=_few(entry.falls_at_most))
+            return _("takes {n} of {total} expected falls away", n=_few(entry.falls_avoided),
+                     total=words.fixed(total, 1))  # fmt: skip
+        falls = _few(entry.falls_at_most)
+        if self.work.row.detail == CHECK:
+            return _("its anchors are trusted to avoid {n} falls", n=falls)
+        return _("would avoid at most {n} falls", n=falls)
 
 
 def _few(falls: float) -> str:
@@ -115,7 +124,7 @@ def list_lines(content: Content) -> list[Line]:
 def say_phases(lines: Iterable[Line]) -> list[str]:
     """Return what the phases of some lines mean, a sentence each."""
     used = {one.phase for one in lines}
-    return [f"{phase}: {_(text)}." for phase, text in PHASES.items() if phase in used]
+    return [f"{_(text)}." for phase, text in PHASES.items() if phase in used and phase]
 
 
 def list_orders(content: Content) -> list[RoomOrder]:

@@ -423,7 +423,8 @@ def say_effects(results: Results, rows: Sequence[ItemResult]) -> str:
         _("{what}: {low} to {high}", what=what, low=words.round_falls(low), high=words.round_falls(high))
         for what, low, high in list_effects(results, rows)
     ]
-    return _("Expected falls by {effects}.", effects="; ".join(effects)) if effects else ""
+    said = "; ".join(effects)
+    return _("Expected falls if it is otherwise than assumed: {effects}.", effects=said) if effects else ""
 
 
 BOORE = (

@@ -18,8 +18,8 @@ NAMED = 2
 """Routes that a reason names; the rest are counted."""
 MOST_NAMES = 8
 """Names, or rows of them, that a page has room for; the Excel report holds all."""
-LITTLE, A_DAY = 0.05, 8.0
-"""Falls below which next to nothing is avoided, and hours of a working day."""
+A_DAY = 8.0
+"""Hours of a working day."""
 LEAST = "+"
 """Mark of a number of fixings that is the least, not a result."""
 WEIGHT, HEIGHT, METRE = "w", "h", "m"
@@ -244,17 +244,16 @@ DISAGREEMENT = fill("Sources disagree on rigid brackets: the Tokyo Fire Departme
 
 def say_effect_of_all(schedule: Schedule) -> list[str]:
     """Return what the whole schedule changes, and what it costs; nothing where there is nothing to fix."""
-    if not schedule.rows:
+    planned = schedule.planned
+    if not planned:
         return []
     before, after = (
         words.say_falls(one.falls, one.falls_low, one.falls_high) for one in (schedule.before, schedule.after)
     )
-    effect = ngettext("Fixing the {n:,} entry below ({pieces}) lowers the expected falls from {before} to {after}, if "
-                      "all anchors hold.",
-                      "Fixing the {n:,} entries below ({pieces}) lowers the expected falls from {before} to {after}, "
-                      "if all anchors hold.", len(schedule.rows),
-                      pieces=words.plural(sum(one.pieces for one in schedule.rows), "piece"), before=before,
-                      after=after)  # fmt: skip
+    effect = ngettext("Phases A and B fix {n:,} piece and lower the expected falls from {before} to {after}, if all "
+                      "anchors hold.",
+                      "Phases A and B fix {n:,} pieces and lower the expected falls from {before} to {after}, if all "
+                      "anchors hold.", sum(one.pieces for one in planned), before=before, after=after)  # fmt: skip
     if schedule.cost is None:
         costs = _("No cost is given: unit costs are read from the sheet {sheet} of the workbook.", sheet=_("Costs"))
         return [effect, costs]
@@ -300,34 +299,6 @@ def list_marks(schedule: Schedule) -> list[str]:
 # ---------------------------------------------------------------- the plan
 
 
-def say_phase(phase: str) -> str:
-    """Return the title of a phase of the plan."""
-    return {
-        "A": _("A: now"), "B": _("B: with the next works"), "C": _("C: not worth it on its own, listed only"),
-    }[phase]  # fmt: skip
-
-
-def say_benefit(one: Work, total: float) -> str:
-    """Return what a whole entry takes away of the expected falls `total`, or would at most where it stands apart."""
-    row = one.entry.row
-    if row.falls_at_most:
-        return _("would avoid up to {falls} falls", falls=words.round_falls(row.falls_at_most))
-    if row.falls_avoided < LITTLE:
-        return _("takes hardly a fall away")
-    return _("takes {falls} of {total} expected falls away", falls=words.fixed(row.falls_avoided, 1),
-             total=words.round_falls(total))  # fmt: skip
-
-
-def say_all_fixings(work: WorkRow) -> str:
-    """Return the fixings of alike pieces, each and in all, and what one carries; a dash where none is counted."""
-    if not work.fixings:
-        return words.DASH
-    counted = _("{each} each, {all:,} in all", each=say_fixings(work), all=work.all_fixings)
-    if not work.pull_kn:
-        return _("{fixings}; the weight holds it", fixings=counted)
-    return _("{fixings}; {force} on each", fixings=counted, force=measures.say(work.pull_kn, "kN"))
-
-
 def say_effort(phase: PhaseRow, schedule: Schedule) -> str:
     """Return what a phase costs; where no cost is given its work, by assumed hours of one person."""
     if schedule.cost is not None:
@@ -349,14 +320,6 @@ def name_places(schedule: Schedule, phase: str, most: int = 3) -> str:
         for floor, room in ordered
     ]
     return words.name_first(names, most)
-
-
-def say_check(row: ScheduleRow) -> str:
-    """Return why an anchor is to be checked, or a piece that rolls to be parked."""
-    if row.works[0].detail == CHECK:
-        falls = words.fixed(row.falls_at_most, 1)
-        return _("trusted to avoid {falls} falls", falls=falls) if row.falls_at_most >= LITTLE else _("trusted to hold")
-    return _("rolls: not covered by the chances")
 
 
 def say_checks(schedule: Schedule) -> str:

@@ -114,7 +114,7 @@ def build_approach(view: View) -> blocks.Section:
         found += [blocks.Paragraph(one.text, "caution") for one in content.cautions]
     classes = "; ".join(f"{words.risk_label(risk)} {limits}" for risk, limits in words.list_limits())
     limits = _("Classes by the chance of overturning: {classes}.", classes=classes)
-    parts = [(_("Chance and class"), (verified.adopted, verified.sentence, limits))]
+    parts: list[tuple[str, tuple[str, ...]]] = [(_("Chance and class"), (verified.adopted, verified.sentence, limits))]
     if verified.done:
         interval = _("A range is the 95 % sampling interval of Wilson (1927). It covers the number of draws only, not "
                      "what is unknown about the earthquake or the furniture. On assumed motion it is the chance in the "

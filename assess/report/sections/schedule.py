@@ -9,7 +9,7 @@ from assess.i18n import fill, gettext as _, ngettext
 from assess.pipeline.schedule import PHASE_RULE
 from assess.report import blocks, measures, words
 from assess.report.page_columns import mark
-from assess.report.say import work as say
+from assess.report.say import orders, work as say
 from assess.report.view import Part, View, say_left
 from assess.schedule_results import Schedule, WorkRow
 
@@ -20,104 +20,69 @@ MOST = 150
 def build(view: View) -> blocks.Section:
     """Return what the plan changes, the work of phases A and B by room, what is only listed, and the details."""
     schedule = view.run.schedule
-    lead = say.say_effect_of_all(schedule)
-    shown = view.content.fixes[:MOST]
+    lines = orders.list_lines(view.content)
     found: list[blocks.Block] = [
-        blocks.Paragraph(" ".join(lead), "lead"),
+        blocks.Paragraph(" ".join(say.say_effect_of_all(schedule)), "lead"),
         blocks.Paragraph(_(PHASE_RULE)),
         *view.list_texts("What to fix"),
     ]
-    for phase in ("A", "B"):
-        if own := [one for one in shown if one.row.phase == phase]:
-            found += [blocks.Heading(say.say_phase(phase)), _list_work(view, own)]
-    found += _list_only(view, [one for one in shown if one.row.phase == "C"])
-    found += say_left(len(schedule.rows) - len(shown))
-    found += _list_checks(view)
+    for phase in ("A", "B", ""):
+        if own := [one for one in lines if one.phase == phase]:
+            found += [blocks.Heading(_(orders.PHASES[phase])), _list_work(view, own[:MOST]), *say_left(len(own) - MOST)]
+    found += _list_only(view)
+    texts = [_(say.CHECKS), blocks.lower_indices(say.say_code(view.run)), _(say.DISAGREEMENT)]
     used = {work.detail for row in (*schedule.rows, *schedule.checks) for work in row.works if row.phase != "C"}
     found += [
         *_list_changes(schedule),
         blocks.Heading(_("How each fix is made")),
-        blocks.Paragraph(
-            blocks.join_words(
-                [
-                    _(say.CHECKS),
-                    blocks.lower_indices(say.say_code(view.run)),
-                    _(say.DISAGREEMENT),
-                    *say.list_marks(schedule),
-                ]
-            ),
-            "lead-in",
-        ),
+        blocks.Paragraph(blocks.join_words([*texts, *say.list_marks(schedule)]), "lead-in"),
         *_list_details(view, [key for key in DETAILS if key in used]),
     ]
     return blocks.Section(found)
 
 
-def _list_work(view: View, entries: Sequence[say.Entry]) -> blocks.Table:
+def _list_work(view: View, lines: Sequence[orders.Line]) -> blocks.Table:
     """Return the work of a phase, room by room."""
-    works = say.list_work(entries, list(view.floor_titles))
-    has_cost = view.run.schedule.cost is not None
+    schedule = view.run.schedule
+    has_cost = any(one.work.row.cost is not None for one in lines)
     columns = blocks.list_columns(
-        (_("No."), "w4", "num"), (_("Pieces"), ""), (_("How"), "w15"), (_("Fixings"), "w12"),
-        (_("What it does"), "w30"), *([(schedule_fields(WorkRow)["cost"].label, "w11", "num")] if has_cost else []),
+        (_("No."), "w5", "num"), (_("Pieces"), ""), (_("How"), "w18"), (_("Fixings each"), "w7", "num"),
+        (_("In all"), "w6", "num"), (_("Pull of one"), "w9", "num"), (_("What it does"), "w24"),
+        *([(schedule_fields(WorkRow)["cost"].label, "w11", "num")] if has_cost else []),
     )  # fmt: skip
     groups = []
-    for (floor, room), own in groupby(works, key=lambda one: (one.row.floor, one.row.room)):
+    for (floor, room), own in groupby(lines, key=lambda one: (one.work.row.floor, one.work.row.room)):
         nowhere = _("no room given")
         heading = f"{view.floor_titles[floor]}: {words.cut(room, 60) or nowhere}"
         groups.append([blocks.part(heading, len(columns))])
-        for one in own:
-            row, detail = one.row, DETAILS[one.row.detail]
+        for line in own:
+            work, row = line.work, line.work.row
             count = f" ({words.plural(row.pieces, 'piece')})" if row.pieces > len(row.items) else ""
-            piece: blocks.Runs = [blocks.strong(one.names), f": {words.cut(one.described, 50)}{count} "]
-            piece += [*mark(one.results[0]), f" {one.chance}"]
-            if photo := view.photos.first_photo(one.results):
+            piece: blocks.Runs = [blocks.strong(work.names), f": {words.cut(work.described, 50)}{count} "]
+            piece += [*mark(work.results[0]), f" {work.chance}"]
+            if photo := view.photos.first_photo(work.results):
                 piece.append(blocks.Image(photo[1], _("Photo of {piece}", piece=photo[0]), "photo"))
-            does = _("with no. {n}", n=one.entry.row.place)
-            if one.is_first:
-                does = say.say_benefit(one, view.run.schedule.before.falls)
-            reason = f"; {one.reason}" if one.reason != words.DASH else ""
+            does = [line.say_effect(schedule.before.falls), "" if work.reason == words.DASH else work.reason]
             groups[-1].append(blocks.Row([
-                str(one.entry.row.place), piece, f"{_(detail.title)} ({detail.who})",
-                say.say_all_fixings(row), f"{does}{reason}",
-                *([say.say_cost(row.cost, view.run.schedule.currency)] if has_cost else []),
+                line.number, piece, f"{line.title} ({DETAILS[row.detail].who})", line.say_fixings(),
+                line.say_fixings(in_all=True), line.say_pull(), "; ".join(filter(None, does)),
+                *([say.say_cost(row.cost, schedule.currency)] if has_cost else []),
             ]))  # fmt: skip
     return blocks.Table(columns, groups, "named schedule", is_named=True)
 
 
-def _list_only(view: View, entries: Sequence[say.Entry]) -> Iterator[blocks.Block]:
+def _list_only(view: View) -> Iterator[blocks.Block]:
     """Yield the entries of phase C by name: they are in the Excel report with all that is known of them."""
+    entries = [one for one in view.content.fixes if one.row.phase == "C"]
     if not entries:
         return
     named = [f"{one.names} ({words.cut(one.results[0].item.floor, 12)})" for one in entries]
-    avoided = sum(one.row.falls_avoided for one in entries)
     text = ngettext("{n:,} entry that takes {falls} falls away: {names}.",
                     "{n:,} entries that together take {falls} falls away: {names}.", len(entries),
-                    falls=words.fixed(avoided, 1), names=words.name_first(named, 40))  # fmt: skip
-    yield blocks.Heading(say.say_phase("C"))
+                    falls=words.fixed(sum(one.row.falls_avoided for one in entries), 1),
+                    names=words.name_first(named, 40))  # fmt: skip
+    yield blocks.Heading(_(orders.PHASES["C"]))
     yield blocks.Paragraph(text)
-
-
-def _list_checks(view: View) -> Iterator[blocks.Block]:
-    """Yield the anchors to check and the pieces that roll, which the plan does not fix with brackets."""
-    checks = view.run.schedule.checks
-    if not checks:
-        return
-    heads = blocks.list_columns(
-        (_("Phase"), "w7"), (_("Pieces"), ""), (_("Where"), "w24"), (_("What to do"), "w24"), (_("Why"), "w24")
-    )  # fmt: skip
-    rows: list[tuple[blocks.Words, ...]] = []
-    for one in checks[:MOST]:
-        work, where = one.works[0], view.floor_titles[one.floor]
-        pieces = [view.results[at] for at in one.item_indices]
-        named = say.join_names(say.shorten_names(each.item.item for each in pieces))
-        described = words.cut(pieces[0].item.description or pieces[0].item.type, 50)
-        rows.append((one.phase, [blocks.strong(named), f": {described}"],
-                     f"{where}, {words.cut(one.room, 40)}" if one.room else where, _(DETAILS[work.detail].title),
-                     say.say_check(one)))  # fmt: skip
-    yield blocks.Heading(_("Anchors to check, and what rolls"))
-    yield blocks.table(heads, rows, "named checks", is_named=True)
-    yield from say_left(len(checks) - MOST)
 
 
 def _list_changes(schedule: Schedule) -> Iterator[blocks.Block]:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from assess.i18n import fill, gettext as _, ngettext, number
 from assess.report import blocks, words
 from assess.report.figures.building import draw_building
-from assess.report.say import route, work
+from assess.report.say import orders, route, work
 from assess.report.say.outcome import say_outcome
 from assess.report.say.piece import say_apart
 from assess.report.say.simulation import name_earthquake
@@ -120,10 +120,10 @@ def _build_plan(view: View) -> Iterator[blocks.Block]:
     for one in schedule.phases:
         what = blocks.join_words([_say_size(one.pieces, one.places), work.name_places(schedule, one.phase)], "; ")
         if one.phase == "C":
-            rows.append((blocks.strong(work.say_phase(one.phase)), what, words.DASH, words.DASH))
+            rows.append((blocks.strong(_(orders.PHASES[one.phase])), what, words.DASH, words.DASH))
             continue
         ways = _say_ways(one.after.routes)
-        rows.append((blocks.strong(work.say_phase(one.phase)), blocks.join_words([what, f"({ways})" if ways else ""]),
+        rows.append((blocks.strong(_(orders.PHASES[one.phase])), blocks.join_words([what, f"({ways})" if ways else ""]),
                      work.say_effort(one, schedule), _draw_bar(one.after.falls, before)))  # fmt: skip
     if checks := work.say_checks(schedule):
         rows.append((blocks.strong(_("Also")), checks, "", ""))

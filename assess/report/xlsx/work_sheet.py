@@ -111,7 +111,7 @@ def _list_columns(content: Content) -> list[Column]:
         Column(_("Fixings in all"), 8, lambda one: one.count_fixings(in_all=True) or None, COUNT, "all_fixings",
                align="center"),
         Column(_("Pull of one fixing"), 9, lambda one: one.say_pull()),
-        Column(_("Takes away"), 13, lambda one: one.say_effect(total)),
+        Column(_("What it does"), 18, lambda one: one.say_effect(total)),
         *costs,
         Column(_("Photo"), 9, photos),
         Column(_("Initials"), 8, lambda _one: ""),
