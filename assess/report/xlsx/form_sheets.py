@@ -30,9 +30,10 @@ CONCERNS = {"LS": "life safety", "PL": "property", "FL": "function"}
 E74_RULE = fill(
     "LS (life safety), PL (property loss) and FL (functional loss) are derived, not judged on the spot: H where the "
     "upper class is high or very high, M where it is medium, L where it is low; one step lower where Importance does "
-    "not name that concern, a piece on an evacuation route being one of life safety. Priority 1: LS is H; 2: PL or FL "
-    "is H; 3: one of them is M; 4: all are L. NE, PR, ER: who may fix it, anyone, by a standard detail, or after an "
-    "engineer's design; – where nothing is to be fixed. Form: FEMA E-74, appendix C."
+    "not name that concern, a piece on an evacuation route being one of life safety; L where it is anchored, – where "
+    "it rolls. Priority 1: LS is H; 2: PL or FL is H; 3: one of them is M; 4: none is. NE, PR, ER: who may fix it, "
+    "anyone, by a standard detail, or after an engineer's design; – where nothing is to be fixed. Form: FEMA E-74, "
+    "appendix C."
 )
 
 
