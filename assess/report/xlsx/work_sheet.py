@@ -102,11 +102,11 @@ def _list_columns(content: Content) -> list[Column]:
         Column(_("Floor"), 6, lambda one: one.work.row.floor),
         Column(_("Room"), 12, lambda one: one.work.row.room, key="room"),
         Column(_("Pieces"), 7, lambda one: one.work.row.pieces, COUNT, "pieces", align="center"),
-        Column(_("Names"), 14, lambda one: ", ".join(
+        Column(_("Names"), 13, lambda one: ", ".join(
             words.join_runs(sorted(one.work.row.items, key=natural_key), 30))),
-        Column(_("What"), 15, lambda one: one.work.described),
+        Column(_("What"), 14, lambda one: one.work.described),
         Column(_("Fix with"), 15, lambda one: one.how),
-        Column(_("Who may do it"), 15, lambda one: _(WHO[DETAILS[one.work.row.detail].who])),
+        Column(_("Who may do it"), 14, lambda one: _(WHO[DETAILS[one.work.row.detail].who])),
         Column(_("Fixings each"), 8, lambda one: one.count_fixings() or None, COUNT, "fixings", align="center"),
         Column(_("Fixings in all"), 8, lambda one: one.count_fixings(in_all=True) or None, COUNT, "all_fixings",
                align="center"),
@@ -116,7 +116,7 @@ def _list_columns(content: Content) -> list[Column]:
         Column(_("Photo"), 9, photos),
         Column(_("Initials"), 8, lambda _one: ""),
         Column(_("Date"), 8, lambda _one: ""),
-        Column(_("Notes"), 9, lambda _one: ""),
+        Column(_("Notes"), 7, lambda _one: ""),
     ]  # fmt: skip
 
 
