@@ -308,7 +308,7 @@ def say_effort(phase: PhaseRow, schedule: Schedule) -> str:
     return ngettext("about {n:,} working day", "about {n:,} working days", round(phase.hours / A_DAY))
 
 
-def name_places(schedule: Schedule, phase: str, most: int = 3) -> str:
+def name_places(schedule: Schedule, phase: str, most: int = 2) -> str:
     """Return the rooms in which a phase takes most falls away, ``Library (42)``."""
     avoided: dict[tuple[str, str], float] = {}
     for one in schedule.rows:

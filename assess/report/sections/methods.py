@@ -255,18 +255,24 @@ def list_facts(view: View) -> blocks.Table:
 
 def list_signing(view: View) -> list[blocks.Block]:
     """Return who answers for the report; on paper with room to sign."""
-    building, origin = view.run.building, view.run.provenance
+    building = view.run.building
     heads = [(_("Role"), "w18"), (_("Name"), "")]
     heads += [(_("Signature"), "w36"), (_("Date"), "w18")] if view.for_print else []
     names = (
         (_("Prepared by"), building.prepared_by), (_("Checked by"), building.checked_by),
         (_("Approved by"), building.approved_by),
     )  # fmt: skip
-    made = _("Made with assess {version} from {workbook}; versions and hashes are in the data-quality log.",
-             version=origin.version, workbook=words.cut(origin.workbook, 80))  # fmt: skip
     room = ("", "") if view.for_print else ()
     rows = [(blocks.head(role), words.cut(name, 60), *room) for role, name in names]
-    return [blocks.table(blocks.list_columns(*heads), rows, "signing"), blocks.Paragraph(made, "small")]
+    return [blocks.table(blocks.list_columns(*heads), rows, "signing")]
+
+
+def say_made(view: View) -> blocks.Paragraph:
+    """Return by which version of the program the report was made, from which workbook."""
+    origin = view.run.provenance
+    made = _("Made with assess {version} from {workbook}; versions and hashes are in the data-quality log.",
+             version=origin.version, workbook=words.cut(origin.workbook, 80))  # fmt: skip
+    return blocks.Paragraph(made, "small")
 
 
 PARTS = (
@@ -278,6 +284,7 @@ PARTS = (
     Part(key="limits", heading=fill("Limits of the methods"), places={"client": 70, "all": 140},
          build=lambda view: blocks.Section([
              *view.list_texts("Limits"), blocks.Bullets(statements.list_limits(view.run), ""),
+             say_made(view),
          ])),
     Part(key="references", heading=fill("References"), places={"annex": 80, "all": 170}, build=build_references),
     Part(key="quality", heading=fill("Data-quality log"), places={"annex": 70, "all": 160}, build=build_quality),

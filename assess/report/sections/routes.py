@@ -11,7 +11,7 @@ from assess.report.view import Part, View, say_left
 from assess.route_results import BLOCKED_FROM, Chance, RoomRow, RouteRow, RouteState, SegmentRow
 from assess.text import natural_key
 
-MOST_LINES, MOST_FIXES, MOST_NAMES, LONGEST = 10, 10, 8, 20
+MOST_LINES, MOST_FIXES, MOST_NAMES, LONGEST = 10, 10, 6, 20
 """Lines of either table of the page, pieces and names of a line, and characters of the name of a piece."""
 MOST_ROUTES, MOST_ROOMS, MOST_BESIDE, MOST_STEPS = 100, 150, 300, 120
 """Rows of the tables that are shown, those most likely to be blocked; the Excel report holds all."""

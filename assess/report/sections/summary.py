@@ -110,8 +110,8 @@ def _build_plan(view: View) -> Iterator[blocks.Block]:
         return
     has_cost = schedule.cost is not None
     heads = blocks.list_columns(
-        (_("Phase"), "w24"), (_("What"), ""), (_("Cost") if has_cost else _("Work (assumed hours)"), "w15"),
-        (_("Falls that remain"), "w30"),
+        (_("Phase"), "w18"), (_("What"), ""), (_("Cost") if has_cost else _("Work (assumed hours)"), "w14"),
+        (_("Falls that remain"), "w24"),
     )  # fmt: skip
     before = schedule.before.falls
     rows: list[tuple[blocks.Words, ...]] = [
