@@ -31,10 +31,10 @@ FILES = ("vertical file", "lateral file", "file cabinet", "filing cabinet", "sch
 ENOUGH, LITTLE = 0.8, 0.01
 """Shares of the falls that all entries avoid: what phase A reaches, and below what one is not worth it. Assumed."""
 PHASE_RULE = fill(
-    "A: all without which a way out stays blocked, life-safety pieces whose upper class is high or above, and entries "
-    "of the highest class until A avoids {enough:.0f} % of the falls that all entries avoid. C: entries of low class, "
-    "or that avoid less than {little:.0f} %, that open no way out and are not life safety. B: the rest. Within a phase "
-    "by upper class, then by the falls that fixing avoids.",
+    "A: what a blocked way out needs, life-safety pieces of high class or above (upper estimate), and the entries of "
+    "the highest class until A avoids {enough:.0f} % of the falls that all entries avoid. C: entries of low class, or "
+    "that avoid less than {little:.0f} %, unless they open a way out or are of life safety. B: the rest. Within a "
+    "phase: by class (upper estimate), then life safety, then the falls that fixing avoids.",
     enough=100 * ENOUGH, little=100 * LITTLE,
 )  # fmt: skip
 """How entries are put into phases, for reports."""
@@ -100,13 +100,16 @@ def build_schedule(
 
 
 def plan(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[Planned]:
-    """Return the entries of the schedule by `PHASE_RULE`: by phase, upper class, and what each avoids."""
+    """Return the entries of the schedule by `PHASE_RULE`: by phase, upper class, life safety, and what each avoids."""
     entries = [
         Planned(_B, one, *(sum(_count_avoided(each) for each in one if bool(each.apart) == at) for at in (False, True)))
         for one in _group_entries(rows, routes)
     ]
     entries.sort(key=lambda one: -one.avoided - one.at_most)
-    entries.sort(key=lambda one: (APART.index(one.pieces[0].apart), -max(each.adopted.upper for each in one.pieces)))
+    entries.sort(key=lambda one: (
+        APART.index(one.pieces[0].apart), -max(each.adopted.upper for each in one.pieces),
+        not any(map(_is_safety, one.pieces)),
+    ))  # fmt: skip
     opening = {fix.item_index for one in routes for fix in one.fixes}
     blocked = [one for one in routes if one.state == RouteState.BLOCKED and one.is_fixed]
     urgent = {fix.item_index for one in blocked for fix in one.fixes if _is_still_blocked(one, fix)}

@@ -312,8 +312,8 @@ def test_what_is_missing_matters_once_the_fixes_are_done():
         for one in (found.routes[0], found.rooms[0]):
             assert (one.state, one.missing, [fix.item for fix in one.fixes]) == (BLOCKED, (), ["P0"])
             assert [row.what for row in one.missing_after] == missing
-        later = "could change a state once the pieces listed are fixed."
-        assert say_uncounted(found).endswith(later if missing else "None of them could change a state.")
+        later = "could change a result above once the pieces listed are fixed."
+        assert say_uncounted(found).endswith(later if missing else "They could not change any result above.")
 
 
 def test_a_stair_that_a_piece_blocks_needs_its_width_once_that_is_fixed():

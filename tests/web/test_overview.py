@@ -74,7 +74,7 @@ def test_it_says_what_is_known_and_why_the_rest_is_not(tmp_path):
     book = hold(write_template(tmp_path / "hall.xlsx", HALL))
     answer = _answer(book)
     assert "of 2 free-standing pieces fall" in answer["outcome"]
-    assert answer["outcome"].endswith("; 2 of 2 ways out are blocked.")
+    assert answer["outcome"].endswith("; 2 of 2 ways out are likely blocked.")
     assert [one["floor"] for one in answer["floors"]] == ["2", "1"], "from the top"
     with speaking(load_catalogue("it")):
         assert "vie d'uscita" in _answer(book)["outcome"]

@@ -18,7 +18,7 @@ def test_names_that_look_ups_read_as_patterns_and_source_ids_that_are_copied_are
     sizes = {"floor": "1", "breadth": 40, "height": 180}
     path = write(tmp_path / "w.xlsx", [{"item": f"A{at}", "source_id": one, **sizes} for at, one in enumerate(ids)])
     assert remarks(assess.read_inventory(path), "warning") == {
-        "Items!AA5: Source ID '2OBrcmyk58NupXoVOHUuXp' is that of row 2, too. Clear it where the row was copied: which "
+        "Items!AB5: Source ID '2OBrcmyk58NupXoVOHUuXp' is that of row 2, too. Clear it where the row was copied: which "
         "of the two is in the model is not known."
     }
 

@@ -233,8 +233,6 @@ def say_code(results: Results) -> str:
 SCREENING = fill("screening, not design")
 CHECKS = fill("Forces are for screening, not design: a structural engineer checks wall, fixings and the body of each "
               "piece.")  # fmt: skip
-ORDER = fill("The numbers give the order: by phase, then by class (upper estimate), then by the falls that fixing "
-             "avoids.")  # fmt: skip
 HOLDS = fill("its own weight holds it at 84 % of PFA; fixings against sliding or for the rest")
 """What a tension of 0 at 84 % of PFA means."""
 DISAGREEMENT = fill("Sources disagree on rigid brackets: the Tokyo Fire Department holds L-brackets that are screwed "

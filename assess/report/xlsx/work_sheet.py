@@ -11,6 +11,7 @@ from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
 from assess.details import DETAILS, WHO
 from assess.i18n import gettext as _
+from assess.pipeline.schedule import PHASE_RULE
 from assess.report import words
 from assess.report.content import Content
 from assess.report.say import work as say_work
@@ -75,7 +76,7 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
             known = [value for one in lines if (value := columns[at[name]].read(one)) is not None]
             formula = f'=IF(COUNT({area})=0,"",SUM({area}))'
             page.write_formula(below, at[name], formula, pen.style("total", code), sum(known) if known else "")
-    texts = [*say_work.say_effect_of_all(schedule), *say_phases(lines), _(say_work.ORDER), _(say_work.CHECKS),
+    texts = [*say_work.say_effect_of_all(schedule), *say_phases(lines), _(PHASE_RULE), _(say_work.CHECKS),
              _(say_work.DISAGREEMENT), *say_work.list_marks(schedule)]  # fmt: skip
     for row, text in enumerate(texts, below + 2):
         pen.paragraph(page, row, text, widths)
