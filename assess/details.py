@@ -111,8 +111,8 @@ DETAILS: Mapping[str, Detail] = {
     one.key: one
     for one in (
         Detail("bracket", fill("L-bracket to studs"),
-            fill("steel L-brackets near the top, screwed into studs or a solid wall, at least 2 in deep; FEMA (2008) "
-                 "shows six for a bookcase of 3 x 6 ft"),
+            fill("steel L-brackets near the top, screwed into studs or a solid wall, at least 2 in (50 mm) deep; FEMA "
+                 "(2008) shows six for a bookcase of 3 x 6 ft (0.9 x 1.8 m)"),
             fill("rigid, assumed to load the screws at every impact. In houses 8.9 % overturned with it, 33.5 % "
                  "without (Kumamoto 2016, n = 79, Tokyo Fire Department); the Earthquake Country Alliance advises "
                  "straps instead"),
@@ -123,8 +123,8 @@ DETAILS: Mapping[str, Detail] = {
                  "stick to"),
             fill("Earthquake Country Alliance"), word="strap", is_at_wall=True),
         Detail("base_angle", fill("base angle"),
-            fill("angles 2 x 2 x 3/16 in at the base, with lag screws 1/4 x 3 in into wood, or expansion bolts 3/8 x "
-                 "2 in into concrete"),
+            fill("angles 2 x 2 x 3/16 in (50 x 50 x 5 mm) at the base, with lag screws 1/4 x 3 in (6 x 75 mm) into "
+                 "wood, or expansion bolts 3/8 x 2 in (10 x 50 mm) into concrete"),
             fill("it holds at the base, where the lever is short: the tension there is larger than at the top"),
             fill("Earthquake Country Alliance"), _NOT_PRINTED, is_at_base=True, word="base angle", who="PR", hours=1.0),
         Detail("gang", fill("gang the row together"),

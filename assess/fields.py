@@ -504,7 +504,7 @@ ENTRY_FIELDS = (
 """One entry of the schedule."""
 
 PHASE_FIELDS = (
-    _work("phase", choices=PHASES), *(_work(key, "count") for key in ("entries", "pieces", "places")),
+    _work("phase", choices=PHASES), *(_work(key, "count") for key in ("entries", "pieces", "places", "uncosted")),
     *(_work(key, "number") for key in ("falls_avoided", "falls_left", "hours")),
     _work("cost", "number", is_optional=True, help="Of what is known; null where nothing is."),
 )  # fmt: skip

@@ -120,7 +120,8 @@ PHASES = ("A", "B", "C")
 class PhaseRow:
     """The entries of one phase of the schedule, and the building once they and those before are done (`PHASE_FIELDS`).
 
-    `places` are rooms; `after` of phase C is that of phase B, as C is listed only.
+    `places` are rooms, `uncosted` entries a part of which has no known cost; `after` of phase C is that of phase B, as
+    C is listed only.
     """
 
     phase: str
@@ -130,6 +131,7 @@ class PhaseRow:
     falls_avoided: float
     falls_left: float
     cost: float | None
+    uncosted: int
     hours: float
     after: State
 

@@ -69,7 +69,15 @@ BUILDING = {
     "approved_by": "Head of department", "revision": "1",
     "scenario": "Loma Prieta earthquake, 17 October 1989, as recorded in the building. "
     "The furniture is an example; the records are real. Floors are assumed to be evenly spread.", "azimuth_deg": 45,
+    "project_number": "Example 575", "survey_date": "2026-10-01", "surveyed_by": "Example consultant",
+    "extent": "Floors 42, 34, 25 and G; the furniture is an example", "rooms_not_entered": "None",
+    "documents": "Strong-motion records of the building; no drawings",
+    "purpose": "To show what a report looks like. Nobody may rely on it.",
 }  # fmt: skip
+TEXTS = (
+    {"section": "What to fix", "text": "The library of floor 42 comes first: its four bookcases are the only pieces "
+     "that overturn under the recorded motion itself."},
+)  # fmt: skip
 
 _OFFICE: Mapping[str, Box] = {
     "South office": (0, 0, 25.4, 5.6),
@@ -444,7 +452,7 @@ def _route_rows() -> list[dict[str, Any]]:
 def content() -> Content:
     """Return the whole workbook, without the results of its live columns."""
     rows: dict[str, Rows] = {"Building": [BUILDING], "Floors": FLOORS, "Items": item_rows(), "Places": _place_rows()}
-    return Content(rows | {"Routes": _route_rows()})
+    return Content(rows | {"Routes": _route_rows(), "Text": TEXTS})
 
 
 def build(path: Path = PATH) -> None:

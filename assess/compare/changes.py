@@ -160,7 +160,7 @@ class Comparison:
         """
         free = {key(one.item) for one in self.after.pieces if not one.is_held}
         was, now = ([one for one in run.entries if one.phase != PHASES[-1]] for run in (self.before, self.after))
-        listed, known = ({key(item) for one in entries for item in one.items} for entries in (now, was))
+        listed, known = ({key(item) for one in some for item in one.items} for some in (now, self.before.entries))
         found = []
         for one in was:
             left = tuple(item for item in one.items if key(item) in free)

@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from assess.details import AT_BASE, AT_WALL, DETAILS, count_fixings, find_detail, says_castors
+from assess.details import AT_BASE, AT_WALL, DETAILS, count_fixings, find_detail
 from assess.i18n import fill
 from assess.model import Cost, Inventory
 from assess.pipeline.anchors import WHAT_IF
@@ -28,14 +28,15 @@ NO_FALLS = 1e-12
 """Expected number of falls below which what is left is that of rounding, and 0."""
 FILES = ("vertical file", "lateral file", "file cabinet", "filing cabinet", "schedario", "classificatore")
 """Words of a description or type, in every language of the workbook, by which a piece is fixed at its base."""
-ENOUGH, LITTLE = 0.8, 0.01
-"""Shares of the falls that all entries avoid: what phase A reaches, and below what one is not worth it. Assumed."""
+ENOUGH, LITTLE = 0.8, 0.1
+"""Share of the falls that all entries avoid that phase A reaches; falls below which one is not worth it. Assumed."""
 PHASE_RULE = fill(
     "A: what a blocked way out needs, life-safety pieces of high class or above (upper estimate), and the entries of "
-    "the highest class until A avoids {enough:.0f} % of the falls that all entries avoid. C: entries of low class, or "
-    "that avoid less than {little:.0f} %, unless they open a way out or are of life safety. B: the rest. Within a "
-    "phase: by class (upper estimate), then life safety, then the falls that fixing avoids.",
-    enough=100 * ENOUGH, little=100 * LITTLE,
+    "the highest class until A avoids {enough:.0f} % of the falls that all entries avoid. C: other entries of low "
+    "class, or of medium class that avoid less than {little:g} falls, unless they open a way out or are of life "
+    "safety. B: the rest. Within a phase: by class (upper estimate), then life safety, then the falls that fixing "
+    "avoids.",
+    enough=100 * ENOUGH, little=LITTLE,
 )  # fmt: skip
 """How entries are put into phases, for reports."""
 _A, _B, _C = PHASES
@@ -92,7 +93,8 @@ def build_schedule(
         row_of_phase = PhaseRow(
             phase=phase, entries=len(own), pieces=sum(one.pieces for one in own), places=len(places),
             falls_avoided=sum(one.falls_avoided for one in own), falls_left=last,
-            cost=sum(priced) if priced else None, hours=sum(one.hours for one in own), after=after,
+            cost=sum(priced) if priced else None, uncosted=sum(one.cost is None for one in own),
+            hours=sum(one.hours for one in own), after=after,
         )  # fmt: skip
         phases.append(row_of_phase)
     currency = next((one.currency for one in inventory.costs), "")
@@ -120,13 +122,15 @@ def plan(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[Planned
         return any(is_dangerous) or not urgent.isdisjoint(each.item.index for each in one.pieces)
 
     def is_poor(one: Planned) -> bool:
-        has_few = one.avoided < LITTLE * total or all(each.adopted.risk == RiskClass.LOW for each in one.pieces)
+        highest = max(each.adopted.risk for each in one.pieces)
+        has_few = highest == RiskClass.LOW or (highest == RiskClass.MEDIUM and one.avoided < LITTLE)
         return has_few and not any(each.apart or each.item.index in opening or _is_safety(each) for each in one.pieces)
 
     reached, phased = sum(one.avoided for one in entries if is_needed(one)), []
     for one in entries:
         phase = _A if is_needed(one) else _C if is_poor(one) else _B
-        if phase == _B and not one.pieces[0].apart and reached < ENOUGH * total:
+        is_first = phase != _A and not one.pieces[0].apart and reached < ENOUGH * total
+        if is_first and max(each.adopted.risk for each in one.pieces) >= RiskClass.MEDIUM:
             phase, reached = _A, reached + one.avoided
         phased.append(one._replace(phase=phase))
     return sorted(phased, key=lambda one: one.phase)
@@ -280,13 +284,11 @@ def _describe_work(alike: Sequence[ItemResult], costs: Mapping[str, Cost]) -> Wo
 def choose_detail(item: ItemRow) -> str:
     """Return the generic detail for a piece: that of its type, else a bracket, or at the base of a filing cabinet.
 
-    What stands free of walls is held at its base instead of at a wall; what stands on castors, or says so while its
-    Mobile is not known, is held neither at a wall nor at its base.
+    What stands free of walls is held at its base instead of at a wall, what stands on castors at neither.
     """
     named = f"{item.type} {item.description}".casefold()
     detail = item.fix_by or (AT_BASE if any(word in named for word in FILES) else AT_WALL)
-    is_mobile = item.mobile if item.mobile is not None else says_castors(named, item.notes)
-    if detail in (AT_WALL, AT_BASE, "strap") and is_mobile:
+    if detail in (AT_WALL, AT_BASE, "strap") and item.mobile:
         return "castors"
     return AT_BASE if detail in (AT_WALL, "strap") and item.against_wall is False else detail
 

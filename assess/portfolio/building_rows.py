@@ -49,7 +49,7 @@ def build_tables(
     path, tables = source.path, results.route_tables
     works = {
         index: {"work_place": entry.place, "detail": DETAILS[work.detail].title, "unit_cost": work.unit_cost}
-        for entry in results.schedule.rows
+        for entry in results.schedule.planned
         for work in entry.works
         for index in work.item_indices
     }

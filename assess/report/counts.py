@@ -51,8 +51,8 @@ class Counts:
 
     @property
     def has_apart(self) -> bool:
-        """Whether pieces are counted apart, as they are unconfirmed, not simulated, or roll."""
-        return bool(self.unconfirmed or self.by_formula or self.rolls)
+        """Whether pieces are counted apart, as they are unconfirmed or not simulated."""
+        return bool(self.unconfirmed or self.by_formula)
 
     def say_cannot_rock(self) -> list[str]:
         """Return how many are low as they cannot rock, in one sentence; nothing where none is."""

@@ -150,8 +150,10 @@ class View:
         return f'{head} role="img" aria-label="{title}"{mark}<title>{title}</title>{rest.strip()}'
 
     def list_texts(self, section: str) -> list[Block]:
-        """Return the free texts that the workbook has for a section."""
-        return [Paragraph(text, "free-text") for name, text in self.run.texts if name == section]
+        """Return the free texts that the workbook has for a section; the summary has those of sections not shown."""
+        keys = {"What to fix": "schedule", "Ways out": "routes"}
+        found = ((name if self.shows(keys.get(name, "summary")) else "Summary", text) for name, text in self.run.texts)
+        return [Paragraph(text, "free-text") for name, text in found if name == section]
 
     def name_piece(self, at: int, longest: int = 20) -> Inline:
         """Return the name of a piece by its index, a link to its row where that is shown."""

@@ -7,7 +7,7 @@ and notes the cells of errors, so that what has been reported once is not report
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
 
-from assess.details import ALTERNATIVES, DETAILS, find_detail, says_castors
+from assess.details import ALTERNATIVES, CHECK, DETAILS, find_detail, says_castors
 from assess.errors import Gap, Problem
 from assess.i18n import Text, fill, join, nfill
 from assess.model import AXES, MEASURED, CatalogueType
@@ -145,6 +145,10 @@ def check_costs(tables: Tables) -> Iterator[Problem]:
             cell = table.cell("detail", before.number)
             message = fill("Detail {name} is the same as that in {cell}.", name=row.quote("detail"), cell=cell)
             yield table.problem("detail", row, message, fill("Give each detail one cost."))
+        elif row.get("per") == "fixing" and not (detail.least and detail.key != CHECK):
+            message = fill("No fixing is counted for detail {name}, so that it cannot be priced by fixing.",
+                           name=row.quote("detail"))  # fmt: skip
+            yield table.problem("per", row, message, fill("Give the cost of one piece."))
         elif detail.key in ALTERNATIVES and row.get("unit_cost") is not None:
             message = fill("Detail {name} is an alternative, which the schedule does not price: its cost is left out.",
                            name=row.quote("detail"))  # fmt: skip

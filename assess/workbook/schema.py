@@ -22,7 +22,7 @@ PLACES = ("room", "corridor", "door", "stair", "exit")
 LANGUAGES = ("English", "Italiano")
 """Of reports: names that `assess.i18n.find_language` knows."""
 YES, NO = "yes", "no"
-CURRENCIES = {"€": "EUR", "$": "USD", "£": "GBP", "¥": "JPY", "Fr": "CHF", "SFr": "CHF", "NZ$": "NZD"}
+CURRENCIES = {"€": "EUR", "$": "USD", "US$": "USD", "£": "GBP", "¥": "JPY", "Fr": "CHF", "SFr": "CHF", "NZ$": "NZD"}
 """ISO codes of currencies by their signs; the codes are offered, any other ISO code may be typed."""
 
 DEFAULT_WIDTH = 0.9

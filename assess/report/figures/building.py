@@ -116,4 +116,4 @@ def _say_ways(states: Sequence[RouteState]) -> str:
     shut = [one for one in states if one != RouteState.OPEN]
     if not shut:
         return ngettext("the way out open", "all {n:,} ways out open", len(states))
-    return _("{n:,} ways out: {states}", n=len(states), states=count_states(shut))
+    return ngettext("{n:,} way out: {states}", "{n:,} ways out: {states}", len(states), states=count_states(shut))

@@ -62,18 +62,21 @@ class Line:
         pull = self.work.row.pull_kn
         if pull == 0:
             return _("none")
-        return words.DASH if pull is None else f"{say_work.say_force(pull)}{words.NO_BREAK}{measures.unit('kN')}"
+        if pull is None:
+            return words.DASH
+        said = f"{say_work.say_force(pull)}{words.NO_BREAK}{measures.unit('kN')}"
+        return f"{said} ({self.work.marks})" if self.work.marks else said
 
     def say_effect(self, total: float) -> str:
         """Return what its entry takes away of all expected falls, `total`; "" of all its lines but the first."""
         entry = self.work.entry.row
         if self.work.results[0].apart == "rolls":
-            return _("rolls: in no chance")
+            return _("rolls: its chance is not known")
         if not self.work.is_first or not (entry.falls_avoided or entry.falls_at_most):
             return ""
         if entry.falls_avoided:
             return _("takes {n} of {total} expected falls away", n=_few(entry.falls_avoided),
-                     total=words.fixed(total, 1))  # fmt: skip
+                     total=number(total, ",.1f"))  # fmt: skip
         falls = _few(entry.falls_at_most)
         if self.work.row.detail == CHECK:
             return _("its anchors are trusted to avoid {n} falls", n=falls)
@@ -81,7 +84,7 @@ class Line:
 
 
 def _few(falls: float) -> str:
-    return words.fixed(falls, 1) if falls >= 0.05 else f"< {words.fixed(0.1, 1)}"
+    return number(falls, ",.1f") if falls >= 0.05 else f"< {words.fixed(0.1, 1)}"
 
 
 def mark_fixings(fixings: int, *, is_least: bool) -> str:

@@ -12,6 +12,8 @@ from assess.results import EarthquakeDraws, ItemResult, Results, count_pieces
 from assess.settings import AUTO
 
 INTERVAL = fill("the sampling interval covers the number of draws only")
+SHORTEST = 8
+"""Characters of the beginning of a scenario that do not name it yet, as "M 6"."""
 ASSUMED = fill("the range is what is not known of the ground and of the building")
 WILSON = (
     "Wilson EB (1927). Probable inference, the law of succession, and statistical inference. Journal of the American "
@@ -39,11 +41,12 @@ def say_scenario(results: Results) -> str:
 
 def name_earthquake(results: Results) -> str:
     """Return the earthquake in a few words: how the scenario of the workbook begins, or what shakes the floors."""
-    scenario = re.split(r"[,;.:(]", " ".join(results.building.scenario.split()), maxsplit=1)[0].strip()
+    scenario = " ".join(results.building.scenario.split())
     if scenario:
-        return words.cut(scenario, 60)
+        first = re.split(r"[,;:(]|\.\s", scenario, maxsplit=1)[0].strip(" .")
+        return words.cut(first if len(first) > SHORTEST else scenario.strip(" ."), 60)
     if results.provenance.shaking:
-        return _(results.provenance.shaking.name)
+        return _("assumed: {intensity}", intensity=_(results.provenance.shaking.name))
     if results.provenance.site_ground:
         return name_source(results.provenance.site_ground)
     return (

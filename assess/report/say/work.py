@@ -68,7 +68,7 @@ def list_steps(routes: RouteTables) -> list[RouteStep]:
 
 
 def say_effect(steps: Sequence[RouteStep]) -> str:
-    """Return the effect of steps of one route in their order: ``route West: 15.5 % → 3.0 % (step 3 of 3)``.
+    """Return the effect of steps of one route in their order: ``route West: from 15.5 % to 3.0 % (step 3 of 3)``.
 
     It is that of all steps where single ones have none, or other steps stand between them.
     """
@@ -81,12 +81,13 @@ def say_effect(steps: Sequence[RouteStep]) -> str:
     values = {"route": words.cut(first.route, 30), "before": say_left(first.before), "steps": first.steps}
     after = say_left(last.after)
     if len(steps) == 1 and (values["before"] != after or first.steps == 1):
-        return _("route {route}: {before} → {after} (step {place:,} of {steps:,})", after=after, place=first.place,
-                 **values)  # fmt: skip
+        return _("route {route}: from {before} to {after} (step {place:,} of {steps:,})", after=after,
+                 place=first.place, **values)  # fmt: skip
     if len(steps) > 1 and values["before"] != after and last.place - first.place + 1 == len(steps):
-        return _("route {route}: {before} → {after} (steps {place:,} to {last:,} of {steps:,})", after=after,
+        return _("route {route}: from {before} to {after} (steps {place:,} to {last:,} of {steps:,})", after=after,
                  place=first.place, last=last.place, **values)  # fmt: skip
-    return _("route {route}: {before} → {after} (with all {steps:,} steps)", after=say_left(first.at_last), **values)
+    at_last = say_left(first.at_last)
+    return _("route {route}: from {before} to {after} (with all {steps:,} steps)", after=at_last, **values)
 
 
 @dataclass(frozen=True, slots=True)
@@ -300,7 +301,8 @@ def list_marks(schedule: Schedule) -> list[str]:
 def say_effort(phase: PhaseRow, schedule: Schedule) -> str:
     """Return what a phase costs; where no cost is given its work, by assumed hours of one person."""
     if schedule.cost is not None:
-        return say_cost(phase.cost, schedule.currency)
+        cost = say_cost(phase.cost, schedule.currency)
+        return _("at least {cost}", cost=cost) if phase.uncosted and phase.cost is not None else cost
     if phase.hours < A_DAY:
         return ngettext("about {n:,} hour", "about {n:,} hours", max(1, round(phase.hours)))
     return ngettext("about {n:,} working day", "about {n:,} working days", round(phase.hours / A_DAY))
@@ -344,13 +346,15 @@ class Change(NamedTuple):
 
 def list_states(states: Sequence[State]) -> list[tuple[str, list[float], int]]:
     """Return what is to be expected of the building in some states: each number with its label and decimals."""
-    found: dict[str, list[float]] = {}
-    decimals: dict[str, int] = {}
-    for state in states:
-        for change in (one for part in list_changes(replace(NOTHING, before=states[0], after=state)) for one in part):
-            found.setdefault(change.label, []).append(change.after)
-            decimals[change.label] = change.decimals
-    return [(label, values, decimals[label]) for label, values in found.items() if len(values) == len(states)]
+    own = [
+        {one.label: one for part in list_changes(replace(NOTHING, before=states[0], after=state)) for one in part}
+        for state in states
+    ]
+    known = {label: one for changes in own for label, one in changes.items()}
+    return [
+        (label, [changes[label].after if label in changes else 0.0 for changes in own], one.decimals)
+        for label, one in known.items()
+    ]
 
 
 def list_changes(schedule: Schedule) -> tuple[list[Change], list[Change]]:

@@ -61,7 +61,7 @@ def _compare_methods(view: View) -> Iterator[blocks.Block]:
     if not rows:
         return
     yield blocks.Heading(_("What each method says"))
-    loose = count_pieces(rows)
+    free = count_pieces(rows)
     lines: list[tuple[str, int, str]] = []
     for method in run.methods:
         if method.kind != "probability" or method.fitted is not None or method.key == run.simulation.key:
@@ -71,9 +71,9 @@ def _compare_methods(view: View) -> Iterator[blocks.Block]:
         note = _("shown while the workbook is filled in") if method.key == run.formula.key else ""
         lines.append((_(method.title), high, note))
     lines.sort(key=lambda line: -line[1])
-    done = [one for one in rows if one.is_simulated]
+    highest, done = max((high for _name, high, _note in lines), default=0), [one for one in rows if one.is_simulated]
     if done:
-        adopted = count_pieces(one for one in rows if one.adopted.risk >= RiskClass.HIGH)
+        adopted = count_pieces(one for one in done if one.adopted.risk >= RiskClass.HIGH)
         lines.append((_("Simulated: an earthquake like this one"), adopted, _("adopted in this report")))
         if any(one.governing.simulation and one.governing.simulation.ideal for one in done):
             exact = count_pieces(one for one in done if one.ideal_class >= RiskClass.HIGH)
@@ -81,21 +81,24 @@ def _compare_methods(view: View) -> Iterator[blocks.Block]:
     heads = blocks.list_columns(
         (_("Method"), ""), (_("Pieces high or very high"), "w20", "num"), (_("Note"), "w36")
     )  # fmt: skip
-    rows_ = [(blocks.head(name), _("{n:,} of {all:,}", n=high, all=loose), note) for name, high, note in lines]
+    rows_ = [(blocks.head(name), _("{n:,} of {all:,}", n=high, all=free), note) for name, high, note in lines]
     yield blocks.table(heads, rows_, "methods-count few")
-    yield blocks.Paragraph(" ".join(say_difference(view)))
+    yield blocks.Paragraph(" ".join(say_difference(view, is_lower=bool(done) and adopted < highest)))
 
 
 def _is_high(one: ItemResult, value: float | None) -> bool:
     return one.adopted.can_rock and value is not None and (classify(value) or RiskClass.LOW) >= RiskClass.HIGH
 
 
-def say_difference(view: View) -> list[str]:
-    """Return why the methods differ, in plain sentences."""
+def say_difference(view: View, *, is_lower: bool) -> list[str]:
+    """Return why the methods differ, in plain sentences; `is_lower`: the simulation finds fewer pieces high."""
     run = view.run
     if not view.content.verified.done:
         return [_("No rocking was simulated in this run: the classes are those of the formula.")]
     draws = number(int(run.settings.runs), ",d") if run.settings.runs != "auto" else _("up to 5,000")
+    if not is_lower:
+        return [_("The formulas know the peak of the floor's motion and the shape of a piece; the simulation follows "
+                  "every piece through {draws} motions of its floor, with its size.", draws=draws)]  # fmt: skip
     return [
         _("The formulas know the peak of the floor's motion and the shape of a piece; they were fitted to strong "
           "shaking and overstate weak shaking."),

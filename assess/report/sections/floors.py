@@ -200,7 +200,8 @@ def _count_floors(view: View, pages: Sequence[FloorPage], *, is_short: bool = Fa
     caption = [
         _("Motion of each floor, and its pieces by class; anchored pieces have no class."),
         _("Classes and expected falls are of simulated pieces alone. Unconfirmed pieces and those by formula only are "
-          "counted apart; up to as many more could fall as are unconfirmed.") if total.has_apart else "",
+          "counted apart; up to as many more could fall as are unconfirmed.")
+        if total.has_apart else "",
         _("Lowered: by simulation. Could be higher: the interval reaches into a higher class. Both are included in the "
           "classes on the left.") if has_changes else "",
     ]  # fmt: skip

@@ -5,7 +5,7 @@ from itertools import groupby
 
 from assess.details import DETAILS, WALLS, WHO
 from assess.fields import schedule_fields
-from assess.i18n import fill, gettext as _, ngettext
+from assess.i18n import fill, gettext as _, ngettext, number
 from assess.pipeline.schedule import PHASE_RULE
 from assess.report import blocks, measures, words
 from assess.report.page_columns import mark
@@ -31,7 +31,8 @@ def build(view: View) -> blocks.Section:
             found += [blocks.Heading(_(orders.PHASES[phase])), _list_work(view, own[:MOST]), *say_left(len(own) - MOST)]
     found += _list_only(view)
     texts = [_(say.CHECKS), blocks.lower_indices(say.say_code(view.run)), _(say.DISAGREEMENT)]
-    used = {work.detail for row in (*schedule.rows, *schedule.checks) for work in row.works if row.phase != "C"}
+    works = [work for row in (*schedule.rows, *schedule.checks) for work in row.works if row.phase != "C"]
+    used = {key for work in works for key in (work.detail, work.like)}
     found += [
         *_list_changes(schedule),
         blocks.Heading(_("How each fix is made")),
@@ -64,7 +65,7 @@ def _list_work(view: View, lines: Sequence[orders.Line]) -> blocks.Table:
                 piece.append(blocks.Image(photo[1], _("Photo of {piece}", piece=photo[0]), "photo"))
             does = [line.say_effect(schedule.before.falls), "" if work.reason == words.DASH else work.reason]
             groups[-1].append(blocks.Row([
-                line.number, piece, f"{line.title} ({DETAILS[row.detail].who})", line.say_fixings(),
+                line.number, piece, f"{line.how} ({DETAILS[row.detail].who})", line.say_fixings(),
                 line.say_fixings(in_all=True), line.say_pull(), "; ".join(filter(None, does)),
                 *([say.say_cost(row.cost, schedule.currency)] if has_cost else []),
             ]))  # fmt: skip
@@ -79,7 +80,7 @@ def _list_only(view: View) -> Iterator[blocks.Block]:
     named = [f"{one.names} ({words.cut(one.results[0].item.floor, 12)})" for one in entries]
     text = ngettext("{n:,} entry that takes {falls} falls away: {names}.",
                     "{n:,} entries that together take {falls} falls away: {names}.", len(entries),
-                    falls=words.fixed(sum(one.row.falls_avoided for one in entries), 1),
+                    falls=number(sum(one.row.falls_avoided for one in entries), ",.1f"),
                     names=words.name_first(named, 40))  # fmt: skip
     yield blocks.Heading(_(orders.PHASES["C"]))
     yield blocks.Paragraph(text)

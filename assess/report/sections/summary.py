@@ -18,7 +18,10 @@ from assess.route_results import RouteState
 def build(view: View) -> blocks.Section:
     """Return the sentence of consequence, the building with a dot a piece, the plan, and the signatures."""
     content, total = view.content, view.content.total
-    outcome = say_outcome(total, view.run.route_tables, name_earthquake(view.run)) or _("No furniture is listed.")
+    outcome = say_outcome(total, view.run.route_tables, name_earthquake(view.run))
+    if not total.free and not total.has_apart:
+        none = _("No free-standing piece has a class.") if total.total else _("No furniture is listed.")
+        outcome = " ".join(filter(None, (none, outcome)))
     first = say_first(view)
     found: list[blocks.Block] = [
         blocks.Paragraph(blocks.join_words([outcome, blocks.strong(first) if first else ""]), "lead decision"),
@@ -45,9 +48,10 @@ def say_first(view: View) -> str:
     if not phases or total < 0.05:
         return ""
     first = phases[0]
-    return ngettext("Fixing {n:,} piece takes away {share:.0f} % of it.",
-                    "Fixing {n:,} pieces in {places} takes away {share:.0f} % of the falls.", first.pieces,
-                    places=words.plural(first.places, "place"), share=100 * first.falls_avoided / total)  # fmt: skip
+    share = f"{number(100 * first.falls_avoided / total, '.0f')}{words.NO_BREAK}%"
+    return ngettext("Fixing {n:,} piece in {places} takes {share} of the falls away.",
+                    "Fixing {n:,} pieces in {places} takes {share} of the falls away.", first.pieces,
+                    places=words.plural(first.places, "place"), share=share)  # fmt: skip
 
 
 def _count(view: View) -> Iterator[blocks.Tiles]:
@@ -56,7 +60,7 @@ def _count(view: View) -> Iterator[blocks.Tiles]:
     falls = words.round_falls(total.expected)
     tiles = []
     if total.free:
-        note = ngettext("of {n:,} loose piece", "of {n:,} loose pieces", total.free)
+        note = ngettext("of {n:,} free-standing piece", "of {n:,} free-standing pieces", total.free)
         if total.falls_low is not None and total.falls_high is not None:
             range_ = words.say_span((round(total.falls_low), round(total.falls_high)))
             note = _("{pieces}; {range} in 9 of 10 such earthquakes", pieces=note, range=range_)
@@ -73,8 +77,11 @@ def _count(view: View) -> Iterator[blocks.Tiles]:
                                  doubtful))  # fmt: skip
     if routes.rooms:
         lost = [one for one in routes.rooms if one.state == RouteState.BLOCKED]
-        tiles.append(blocks.Tile("rooms", _("Rooms that may lose every exit"), number(len(lost), ",d"),
-                                 ngettext("of {n:,} room", "of {n:,} rooms", len(routes.rooms))))  # fmt: skip
+        at_risk = sum(one.state == RouteState.DOUBTFUL for one in routes.rooms)
+        tiles.append(blocks.Tile("rooms", _("Rooms likely cut off"), number(len(lost), ",d"),
+                                 ngettext("of {n:,} room; {doubtful:,} more doubtful",
+                                          "of {n:,} rooms; {doubtful:,} more doubtful", len(routes.rooms),
+                                          doubtful=at_risk)))  # fmt: skip
     if tiles:
         yield blocks.Tiles(tiles)
 

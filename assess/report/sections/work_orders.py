@@ -49,6 +49,9 @@ def _build_overview(view: View, orders: Sequence[RoomOrder], shown: int) -> bloc
     none = _("Pull of one, none: {why}.", why=_(say_work.HOLDS))
     of_rooms = blocks.list_columns((_("Room, and its page"), ""), (_("Phase"), "w10"), (_("Lines"), "w10", "num"),
                                    (_("Pieces"), "w10", "num"), (_("Done"), "w8"))  # fmt: skip
+    stickers = sum(len(list(say.list_stickers([one], ""))) for one in orders)
+    cut = _("Stickers: the first {most:,} of {n:,} are printed.", most=MOST_STICKERS, n=stickers)
+    cut = cut if stickers > MOST_STICKERS else ""
     more = ngettext("{n:,} more room is in the Excel report.", "{n:,} more rooms are in the Excel report.",
                     len(orders) - shown) if len(orders) > shown else ""  # fmt: skip
     return blocks.Section([
@@ -60,7 +63,7 @@ def _build_overview(view: View, orders: Sequence[RoomOrder], shown: int) -> bloc
         blocks.Paragraph(blocks.join_words((_(say_work.CHECKS), *marks, none)), "small"),
         blocks.Heading(_("Rooms")),
         blocks.table(of_rooms, rooms, "rooms-of-work", is_named=True),
-        blocks.Paragraph(blocks.join_words((*say.say_phases(lines), more)), "small"),
+        blocks.Paragraph(blocks.join_words((*say.say_phases(lines), more, cut)), "small"),
     ])  # fmt: skip
 
 

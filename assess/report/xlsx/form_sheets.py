@@ -30,10 +30,10 @@ CONCERNS = {"LS": "life safety", "PL": "property", "FL": "function"}
 E74_RULE = fill(
     "LS (life safety), PL (property loss) and FL (functional loss) are derived, not judged on the spot: H where the "
     "upper class is high or very high, M where it is medium, L where it is low; one step lower where Importance does "
-    "not name that concern, a piece on an evacuation route being one of life safety; L where it is anchored, – where "
-    "it rolls. Priority 1: LS is H; 2: PL or FL is H; 3: one of them is M; 4: none is. NE, PR, ER: who may fix it, "
-    "anyone, by a standard detail, or after an engineer's design; – where nothing is to be fixed. Form: FEMA E-74, "
-    "appendix C."
+    "not name that concern, a piece on an evacuation route or without Importance being one of life safety; L where it "
+    "is anchored, – where it rolls. Priority 1: LS is H; 2: PL or FL is H; 3: one of them is M; 4: none is. NE, PR, "
+    "ER: who may fix it, anyone, by a standard detail, or after an engineer's design; – where nothing is to be fixed. "
+    "Form: FEMA E-74, appendix C."
 )
 
 
@@ -42,7 +42,8 @@ def rate(one: ItemResult) -> dict[str, str]:
     if one.apart == ROLLS:
         return dict.fromkeys(CONCERNS, words.DASH)
     level = 0 if one.is_anchored else min(max(one.adopted.risk, one.adopted.upper), RiskClass.HIGH)
-    named = {name for name, word in CONCERNS.items() if word == one.item.importance or (name == "LS" and one.routes)}
+    is_life = bool(one.routes) or not one.item.importance
+    named = {name for name, word in CONCERNS.items() if word == one.item.importance or (name == "LS" and is_life)}
     return {name: "LMH"[level if name in named else max(level - 1, 0)] for name in CONCERNS}
 
 
@@ -124,7 +125,7 @@ def _in_the_way(content: Content, *, falls: bool) -> Answer:
     found = set()
     for one in near:
         piece = content.results[one.item_index]
-        risky = not piece.is_anchored and piece.adopted.risk >= RiskClass.MEDIUM
+        risky = not piece.is_anchored and not piece.apart and piece.adopted.risk >= RiskClass.MEDIUM
         found |= {one.item} if (risky if falls else one.distance_m < 0) else set()
     return ("no", sorted(found, key=natural_key)) if found else ("yes", ())
 

@@ -69,13 +69,15 @@ def write_work(pen: Pen, page: Any, content: Content) -> None:
                 page.write_formula(row, place, formula, style, "" if value is None else value)
             else:
                 pen.put(page, row, place, value, style)
-    page.write_string(below, at["room"], _("Sum"), pen.style("total"))
+    page.write_string(below, at["room"], _("Sum of A and B"), pen.style("total"))
+    phase = f"{xl_col_to_name(at['phase'])}{HEAD + 2}:{xl_col_to_name(at['phase'])}{below}"
     for name, code in (("pieces", COUNT), ("all_fixings", COUNT), ("cost", MONEY)):
         if name in at:
             area = f"{xl_col_to_name(at[name])}{HEAD + 2}:{xl_col_to_name(at[name])}{below}"
-            known = [value for one in lines if (value := columns[at[name]].read(one)) is not None]
-            formula = f'=IF(COUNT({area})=0,"",SUM({area}))'
-            page.write_formula(below, at[name], formula, pen.style("total", code), sum(known) if known else "")
+            read = columns[at[name]].read
+            known = [value for one in lines if one.phase in ("A", "B") and (value := read(one)) is not None]
+            formula = f'=SUMIFS({area},{phase},"A")+SUMIFS({area},{phase},"B")'
+            page.write_formula(below, at[name], formula, pen.style("total", code), sum(known))
     texts = [*say_work.say_effect_of_all(schedule), *say_phases(lines), _(PHASE_RULE), _(say_work.CHECKS),
              _(say_work.DISAGREEMENT), *say_work.list_marks(schedule)]  # fmt: skip
     for row, text in enumerate(texts, below + 2):
@@ -99,7 +101,7 @@ def _list_columns(content: Content) -> list[Column]:
     return [
         Column(_("Done"), 6, lambda _one: BOX, key="done", align="center"),
         Column(_("No."), 5, lambda one: one.number, key="number", align="center"),
-        Column(_("Phase"), 6, lambda one: one.when, align="center"),
+        Column(_("Phase"), 6, lambda one: one.when, key="phase", align="center"),
         Column(_("Floor"), 6, lambda one: one.work.row.floor),
         Column(_("Room"), 12, lambda one: one.work.row.room, key="room"),
         Column(_("Pieces"), 7, lambda one: one.work.row.pieces, COUNT, "pieces", align="center"),
