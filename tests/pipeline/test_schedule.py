@@ -155,13 +155,13 @@ def rows_of(results):
     return [(row.phase, results.item_rows[row.item_indices[0]].item) for row in results.schedule.rows]
 
 
-def test_what_avoids_most_and_what_saves_lives_is_done_now_and_what_avoids_little_is_listed_only():
-    """Of 117 like falls: 100 are more than 80 %, so that 16 are for later; 1 is less than 1 %, but of life safety."""
+def test_what_avoids_most_and_what_saves_lives_is_done_now_and_high_pieces_are_never_only_listed():
+    """Of 117 like falls: 100 are more than 80 %, so that 16 and 1 are for later; another 1 is of life safety."""
     few = {"a": 100, "b": 16, "c": 1, "d": 1}
     items = [TALL | {"item": name, "room": name, "quantity": n} for name, n in few.items()]
     items[3]["importance"] = "life safety"
     found, schedule, _ = schedule_of(items)
-    assert rows_of(found) == [("A", "d"), ("A", "a"), ("B", "b"), ("C", "c")]
+    assert rows_of(found) == [("A", "d"), ("A", "a"), ("B", "b"), ("B", "c")]
     assert [row.place for row in schedule.rows] == [1, 2, 3, 4]
     chance = found["a"].adopted.probability
     phases = [(one.phase, one.entries, one.pieces, one.places) for one in schedule.phases]
@@ -191,7 +191,7 @@ def test_what_opens_a_blocked_way_is_done_now_however_little_it_avoids():
     assert rows_of(found) == [("A", "many"), ("A", "near")]
     assert dict(schedule.phases[0].after.routes) == {"open": 1}
     found, _, _ = schedule_of([items[0], {**items[1], "route": None}])
-    assert rows_of(found) == [("A", "many"), ("C", "near")]
+    assert rows_of(found) == [("A", "many"), ("B", "near")]
 
 
 def test_anchors_are_checked_or_completed_with_the_fixings_of_the_piece_and_trusted_ones_stand_in_no_sum():
@@ -228,8 +228,8 @@ def test_anchors_are_checked_or_completed_with_the_fixings_of_the_piece_and_trus
         ({"type": "Gas cylinder trolley"}, "chain"), ({"type": "Bookcase 5 shelves"}, "bracket"),
         ({"type": "Bookcase 5 shelves", "against_wall": "no"}, "base_angle"),
         ({"type": "Refrigerator side by side", "against_wall": "no"}, "base_angle"),
-        ({"type": "Bookcase 5 shelves", "mobile": "yes"}, "castors"), ({"notes": "stands on castors"}, "castors"),
-        ({"notes": "stands on castors", "mobile": "no"}, "bracket"), ({"description": "Filing cabinet"}, "base_angle"),
+        ({"type": "Bookcase 5 shelves", "mobile": "yes"}, "castors"), ({"notes": "stands on castors"}, "bracket"),  # words only ask
+        ({"description": "Filing cabinet"}, "base_angle"),
         ({"type": "Own, to the ceiling"}, "ceiling"), ({"type": "Own, not said"}, "bracket"),
     ],
 )  # fmt: skip
@@ -273,3 +273,13 @@ def test_of_a_blocked_way_those_steps_are_done_now_that_end_that_and_later_those
     assert [fix.left + fix.gain for fix in route.fixes] == pytest.approx([0.411, 0.297, 0.162], abs=5e-4)
     assert rows_of(found) == [("A", "many"), ("A", "a"), ("B", "b"), ("B", "c")]
     assert [dict(one.after.routes) for one in schedule.phases] == [{"doubtful": 1}, {"open": 1}]
+
+
+def test_in_a_large_building_where_no_entry_is_a_large_share_what_avoids_most_is_done_now():
+    """A hundred and fifty rooms with a like bookcase each: none avoids a hundredth, and none is left to be listed."""
+    items = [TALL | {"item": f"B{at}", "room": f"R{at}"} for at in range(150)]
+    found, schedule, _ = schedule_of(items)
+    phases = [row.phase for row in schedule.rows]
+    assert (phases.count("A"), phases.count("B"), phases.count("C")) == (120, 30, 0)
+    assert schedule.phases[0].falls_avoided == pytest.approx(0.8 * schedule.before.falls)
+    assert found["B0"].adopted.probability > 0
