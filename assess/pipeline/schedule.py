@@ -129,7 +129,7 @@ def plan(rows: Sequence[ItemResult], routes: Sequence[RouteRow]) -> list[Planned
     reached, phased = sum(one.avoided for one in entries if is_needed(one)), []
     for one in entries:
         phase = _A if is_needed(one) else _C if is_poor(one) else _B
-        is_first = phase != _A and not one.pieces[0].apart and reached < ENOUGH * total
+        is_first = phase != _A and not one.pieces[0].apart and reached < ENOUGH * total - NO_FALLS
         if is_first and max(each.adopted.risk for each in one.pieces) >= RiskClass.MEDIUM:
             phase, reached = _A, reached + one.avoided
         phased.append(one._replace(phase=phase))
