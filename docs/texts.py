@@ -107,7 +107,7 @@ def _of_the_workbook() -> Iterator[tuple[str, str]]:
     from assess.workbook import lists, live_row, template
     from assess.workbook.catalogue import catalogue_texts
     from assess.workbook.example import example_texts, room_texts
-    from assess.workbook.schema import HELP, LISTS
+    from assess.workbook.schema import HELP, LISTS, WALK_DOWN
     from assess.workbook.worked_example import worked_texts
 
     texts = (
@@ -121,7 +121,7 @@ def _of_the_workbook() -> Iterator[tuple[str, str]]:
         template.FOOTER,
     )
     yield from ((text, "assess/workbook/template.py") for text in texts)
-    yield from ((text, "assess/workbook/schema.py") for text in (HELP, LISTS))
+    yield from ((text, "assess/workbook/schema.py") for text in (HELP, LISTS, WALK_DOWN))
     yield from (
         (text, "assess/workbook/lists.py")
         for text in (lists.LISTS_NOTE, lists.RUN_ASSESS, lists.NO_SHAKING, lists.NO_UNIT, *lists.LISTED)

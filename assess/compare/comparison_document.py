@@ -71,7 +71,7 @@ _KINDS: Mapping[Direction, tuple[Text, str]] = {
 }
 """Name and tone of each direction."""
 _STATUSES: Mapping[Status, tuple[Text, str]] = {
-    Status.OPEN: (fill("open"), "worse"),
+    Status.OPEN: (fill("still open"), "worse"),
     Status.NEW: (fill("new"), "worse"),
     Status.DROPPED: (fill("no longer recommended"), "unclear"),
     Status.DONE: (fill("done"), "better"),

@@ -46,7 +46,7 @@ class Line:
     @property
     def when(self) -> str:
         """Its phase in short."""
-        return self.phase or _("check")
+        return self.phase or _("to check")
 
     def count_fixings(self, *, in_all: bool = False) -> int:
         """Return the fixings that one piece, or all, need; none of an anchor that is only checked."""
