@@ -62,7 +62,10 @@ class HtmlWriter:
             case blocks.Figure(image, caption, kind, legend):
                 caption_ = f"\n<figcaption>{self.words(caption)}</figcaption>" if caption else ""
                 inside = self.write_blocks(legend)
-                return f"<figure{_attributes(kind=kind)}>{self._image(image)}{inside}{caption_}</figure>"
+                focus = ""
+                if kind and not self.for_print:  # on a phone it scrolls sideways
+                    focus = f' tabindex="0" aria-label="{escape(_("Figure"))}"'
+                return f"<figure{_attributes(kind=kind)}{focus}>{self._image(image)}{inside}{caption_}</figure>"
             case blocks.Listing(head, lines):
                 rows = "\n".join(self.words(line) for line in lines)
                 return f'<pre class="listing"><b>{escape(head)}</b>\n{rows}\n</pre>'

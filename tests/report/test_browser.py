@@ -57,6 +57,7 @@ def open_page(browser, report):
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("request", lambda one: complaints.extend([] if one.url.startswith(("file:", "data:")) else [one.url]))
         page.goto(report.as_uri())
+        page.locator("#items > details > summary").click()  # the table of all pieces is folded
         return page
 
     yield open_page
@@ -103,6 +104,7 @@ def test_nothing_but_its_own_script_runs(browser, report):
     other = report.with_name("slipped.html")
     other.write_text(html.replace("</main>", f"{slipped}</main>"), encoding="utf-8")
     page.goto(other.as_uri())
+    page.locator("#items > details > summary").click()
     assert page.evaluate("window.ran") is None
     assert _status(page) == "Rows: 5, all shown"
     refused = [text for text in complaints if "Content Security Policy" in text]
@@ -170,6 +172,7 @@ def test_parts_of_the_table_are_sorted_and_filtered_each_by_itself(browser, tmp_
     assert [one.apart for one in results] == ["formula", "", "formula", ""]
     page = browser.new_page()
     page.goto(assess.write_reports(results, tmp_path, "html")["html"].as_uri())
+    page.locator("#items > details > summary").click()
     heading = "By formula only: not simulated"
     assert _shown(page) == ["c", "d", "a", "b"]  # by name, not as the workbook has them
     assert page.locator("#pieces tr.part").all_inner_texts() == [heading]
@@ -236,3 +239,18 @@ def test_the_page_never_scrolls_sideways(open_page, width):
     assert page.locator("#pieces td").evaluate_all(too_wide) == []
     for selector in ("#pieces", "svg.floor-plan", "#filter-bar"):
         assert page.locator(selector).first.is_visible()
+
+
+def test_what_is_folded_opens_where_a_link_leads_into_it_and_for_printing(browser, report):
+    page = browser.new_page()
+    page.goto(report.as_uri())
+    table, methods = page.locator("#pieces"), page.locator("#methods > details")
+    assert not table.is_visible()
+    assert page.locator("#summary").is_visible()
+    assert page.locator("nav.contents").bounding_box()["y"] < page.locator("#summary").bounding_box()["y"]
+    page.locator("a.piece").first.click()
+    table.wait_for(state="visible")
+    assert not methods.evaluate("one => one.open")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert methods.evaluate("one => one.open")
+    page.close()

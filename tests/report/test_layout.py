@@ -126,7 +126,7 @@ def test_a_floor_with_its_plan_stays_on_one_page_and_the_approval_block_has_room
     rows = [row for row in _of(table, boxes.TableRowBox) if row.element.getparent().tag == "tbody"] if hasattr(
         table.element, "getparent") else _of(table, boxes.TableRowBox)[1:]  # fmt: skip
     assert len(rows) == 3
-    assert all(row.height >= 14 / 25.4 * 96 - 1 for row in rows)
+    assert all(row.height >= 9 / 25.4 * 96 - 1 for row in rows)
 
 
 LEVELS = [
