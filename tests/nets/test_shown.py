@@ -44,10 +44,10 @@ def test_a_number_a_sentence_and_a_column_that_change_are_named(tmp_path):
     """The nets hold: what is changed on purpose turns red, and the difference shows the line before and after."""
     name = "one-piece"
     results = read_stored(name, tmp_path)
-    text = "No free-standing piece has"
+    text = "How sure this is"
     shown = show(name, results, tmp_path / "out")
     for kind, before, after in (
-        ("html", text, "Not one piece has"),
+        ("html", text, "How certain this is"),
         ("json", "breadth_cm 30", "breadth_cm 31"),
         ("csv", "item,", ""),
     ):
