@@ -62,9 +62,7 @@ class HtmlWriter:
             case blocks.Figure(image, caption, kind, legend):
                 caption_ = f"\n<figcaption>{self.words(caption)}</figcaption>" if caption else ""
                 inside = self.write_blocks(legend)
-                focus = ""
-                if kind and not self.for_print:  # on a phone it scrolls sideways
-                    focus = f' tabindex="0" aria-label="{escape(_("Figure"))}"'
+                focus = self._name_scroller(_("Figure")) if kind else ""  # on a phone it scrolls sideways
                 return f"<figure{_attributes(kind=kind)}{focus}>{self._image(image)}{inside}{caption_}</figure>"
             case blocks.Listing(head, lines):
                 rows = "\n".join(self.words(line) for line in lines)
@@ -89,10 +87,13 @@ class HtmlWriter:
                     f'<h2 class="plain">{escape(heading)}</h2>\n<ol>\n{rows}</ol>\n{note}</nav>'
                 )
             case blocks.Box(inside, kind, tag, id_, label):
-                attributes = _attributes(id=id_, kind=kind)
-                if label and not self.for_print:  # what scrolls is reached by the keyboard, and says what it is
-                    attributes += f' role="region" tabindex="0" aria-label="{escape(label)}"'
+                attributes = _attributes(id=id_, kind=kind) + (self._name_scroller(label, "region") if label else "")
                 return f"<{tag}{attributes}>\n{self.write_blocks(inside)}</{tag}>"
+
+    def _name_scroller(self, name: str, role: str = "") -> str:
+        """Return the attributes of what scrolls on a screen: it is reached by the keyboard, and says what it is."""
+        part = f' role="{role}"' if role else ""
+        return "" if self.for_print else f'{part} tabindex="0" aria-label="{escape(name)}"'
 
     # ------------------------------------------------------------ tables
 
