@@ -88,6 +88,11 @@ class Detail:
     hours: float = 0.5
     least: int = LEAST_FIXINGS
     is_at_wall: bool = False
+    what_us: Text | None = None
+
+    def say_what(self, *, us: bool = False) -> Text:
+        """Return what is done, in SI or in US units."""
+        return self.what if self.what_us is None or not us else self.what_us
 
     @property
     def capacity(self) -> float | None:
@@ -111,22 +116,26 @@ DETAILS: Mapping[str, Detail] = {
     one.key: one
     for one in (
         Detail("bracket", fill("L-bracket to studs"),
-            fill("steel L-brackets near the top, screwed into studs or a solid wall, at least 2 in (50 mm) deep; FEMA "
-                 "(2008) shows six for a bookcase of 3 x 6 ft (0.9 x 1.8 m)"),
+            fill("steel L-brackets near the top, screwed into studs or a solid wall, at least 50 mm deep; FEMA (2008) "
+                 "shows six for a bookcase of 0.9 x 1.8 m"),
             fill("rigid, assumed to load the screws at every impact. In houses 8.9 % overturned with it, 33.5 % "
                  "without (Kumamoto 2016, n = 79, Tokyo Fire Department); the Earthquake Country Alliance advises "
                  "straps instead"),
-            fill("FEMA 2008; Tokyo Fire Department, Kumamoto 2016"), word="wall bracket", hours=0.75, is_at_wall=True),
+            fill("FEMA 2008; Tokyo Fire Department, Kumamoto 2016"), word="wall bracket", hours=0.75, is_at_wall=True,
+            what_us=fill("steel L-brackets near the top, screwed into studs or a solid wall, at least 2 in deep; FEMA "
+                         "(2008) shows six for a bookcase of 3 x 6 ft")),
         Detail("strap", fill("straps to two studs"),
             fill("flexible nylon straps near the top, to two studs, drawn tight"),
             fill("assumed: a slack strap lets the piece rock; stick-on ends hold no better than the face that they "
                  "stick to"),
             fill("Earthquake Country Alliance"), word="strap", is_at_wall=True),
         Detail("base_angle", fill("base angle"),
-            fill("angles 2 x 2 x 3/16 in (50 x 50 x 5 mm) at the base, with lag screws 1/4 x 3 in (6 x 75 mm) into "
-                 "wood, or expansion bolts 3/8 x 2 in (10 x 50 mm) into concrete"),
+            fill("angles 50 x 50 x 5 mm at the base, with lag screws 6 x 75 mm into wood, or expansion bolts 10 x 50 "
+                 "mm into concrete; the source has inches"),
             fill("it holds at the base, where the lever is short: the tension there is larger than at the top"),
-            fill("Earthquake Country Alliance"), _NOT_PRINTED, is_at_base=True, word="base angle", who="PR", hours=1.0),
+            fill("Earthquake Country Alliance"), _NOT_PRINTED, is_at_base=True, word="base angle", who="PR", hours=1.0,
+            what_us=fill("angles 2 x 2 x 3/16 in at the base, with lag screws 1/4 x 3 in into wood, or expansion bolts "
+                         "3/8 x 2 in into concrete")),
         Detail("gang", fill("gang the row together"),
             fill("bolt neighbours in a row, or back to back, together near the top and at the base"),
             fill("it only helps where the row is broader than one piece: back to back, or with a return"),

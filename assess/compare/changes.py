@@ -160,14 +160,17 @@ class Comparison:
         """
         free = {key(one.item) for one in self.after.pieces if not one.is_held}
         was, now = ([one for one in run.entries if one.phase != PHASES[-1]] for run in (self.before, self.after))
-        listed, known = ({key(item) for one in some for item in one.items} for some in (now, self.before.entries))
+        listed, planned = ({key(item) for one in entries for item in one.items} for entries in (now, was))
+        known = {key(item) for one in self.before.entries for item in one.items}
         found = []
         for one in was:
             left = tuple(item for item in one.items if key(item) in free)
             status = Status.OPEN if listed & {*map(key, left)} else Status.DROPPED if left else Status.DONE
             found.append(Recommendation(one, status, left))
-        fresh = ((one, tuple(item for item in one.items if key(item) not in known)) for one in now)
-        found += [Recommendation(one, Status.NEW, items) for one, items in fresh if items]
+        for one in now:  # of those that were listed only, it was known already
+            if items := tuple(item for item in one.items if key(item) not in planned):
+                status = Status.OPEN if known.issuperset(map(key, items)) else Status.NEW
+                found.append(Recommendation(one, status, items))
         return tuple(sorted(found, key=lambda one: ([*Status].index(one.status), one.entry.place)))
 
     def count(self, *directions: Direction) -> int:

@@ -431,7 +431,8 @@ def _take_money(column: Column, value: str) -> tuple[object, Remark | None] | No
     named = [one for one in (match[1], match[3]) if one] if match else []
     if match is None or not named:
         return None
-    codes = [find_currency(one) if one.strip() in CURRENCIES or one.isupper() else "" for one in named]
+    usual = {*CURRENCIES, *CURRENCIES.values()}  # of the others, which may be words, the code as it is written
+    codes = [find_currency(one) if one.isupper() or {one.strip(), one.strip().upper()} & usual else "" for one in named]
     if len(codes) > 1 and all(codes):
         fault = fill("{label} is {text}: it names a currency twice.", label=column.label, text=shorten(value))
         raise CellError(fault, fill("Write the currency once."))

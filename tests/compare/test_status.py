@@ -50,7 +50,9 @@ def test_an_entry_is_done_once_its_pieces_hold_or_are_gone_and_open_while_any_is
     assert follow("open", entry(second), held=[first]) == [("open", (second,))]
     assert follow("left", held=[first]) == [("no longer recommended", (second,))], "neither fixed nor recommended"
     assert follow("listed", entry(second, phase="C"), held=[first]) == [("no longer recommended", (second,))]
-    assert follow("new", entry(second), entry(third, place=2), held=[first]) == [("open", (second,)), ("new", (third,))]
+    both = entry(second), entry(third, place=2)
+    assert follow("known", *both, held=[first]) == [("open", (second,)), ("open", (third,))], "it was listed"
+    assert follow("new", *both, entry(names[3], place=3), held=[first])[-1] == ("new", (names[3],))
 
 
 def test_the_counts_come_first_and_every_file_has_the_table(before, tmp_path):
@@ -58,7 +60,7 @@ def test_the_counts_come_first_and_every_file_has_the_table(before, tmp_path):
     was = read_changed(before, tmp_path / "was", edit(entry(names[0]), entry(names[1], place=2)))
     now = read_changed(before, tmp_path / "now", edit(entry(names[1]), entry(names[2], place=2), held=names[:1]))
     found = compare(was, now)
-    said = "1 of 2 recommendations of the last report is done, 1 open, 1 new."
+    said = "1 of 2 recommendations of the last report is done, 1 still open, 1 new."
     assert next(describe_comparison(found)) == said.replace(" is ", " are ")
     written = write_comparison(found, tmp_path / "out", ["html", "xlsx", "json"])
     page = written["html"].read_text(encoding="utf-8")
@@ -66,7 +68,7 @@ def test_the_counts_come_first_and_every_file_has_the_table(before, tmp_path):
     record = json.loads(written["json"].read_text(encoding="utf-8"))
     assert [one["status"] for one in record["recommendations"]] == ["open", "new", "done"]
     rows = list(openpyxl.load_workbook(written["xlsx"])["Recommendations"].iter_rows(values_only=True))
-    assert [row[:2] for row in rows[1:]] == [("open", names[1]), ("new", names[2]), ("done", names[0])]
+    assert [row[:2] for row in rows[1:]] == [("still open", names[1]), ("new", names[2]), ("done", names[0])]
 
 
 def test_earlier_results_have_no_phase_or_no_schedule(before, tmp_path):

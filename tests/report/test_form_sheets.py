@@ -98,7 +98,7 @@ def test_the_work_list_is_printed_at_eight_points_a_page_a_floor(verified_exampl
     assert len(page.row_breaks.brk) == len(dict.fromkeys(floors)) - 1
     assert [page.cell(row, 2).value for row in range(3, 3 + len(lines))] == [line.number for line in lines]
     total = page.cell(3 + len(lines), 6).value
-    assert str(total).startswith("=IF(COUNT(F3:F")
+    assert str(total).startswith("=SUMIFS(F3:F")
     assert "market-street.xlsx" in page["A1"].value
 
 

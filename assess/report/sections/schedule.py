@@ -105,9 +105,9 @@ def _list_details(view: View, keys: Sequence[str]) -> Iterator[blocks.Table]:
     """Yield the details that are used, with a drawing, by whom, and what is known against each; then the fixings."""
     rows: list[tuple[blocks.Words, ...]] = []
     for one in (DETAILS[key] for key in keys):
-        drawing, texts = view.read_drawing(one), [_(one.what), *([] if one.is_at_wall else [_(one.fixing)])]
+        drawing, what = view.read_drawing(one), _(one.say_what(us=measures.is_us()))
         lines: blocks.Runs = [blocks.strong(_(one.title)), f" – {one.who}: {_(WHO[one.who])}", blocks.BREAK]
-        lines.append("; ".join(texts))
+        lines.append(what if one.is_at_wall else f"{what}; {_(one.fixing)}")
         lines += [blocks.BREAK, blocks.note(". ".join(filter(None, (_(one.weakness), _(one.source)))) + ".")]
         rows.append((blocks.Image(drawing) if drawing else "", lines))
     yield blocks.table(blocks.list_columns(("", "w24"), ("", "")), rows, "details")

@@ -122,7 +122,7 @@ def _show_detail(view: View, key: str) -> blocks.Box:
     if detail.is_at_wall:
         us = measures.is_us()
         fixings = blocks.Bullets([f"{_(name)}: {_(detail.say_fixing(wall, us=us))}." for wall, name in WALLS.items()])
-    what = blocks.Paragraph([blocks.strong(_(detail.title)), f": {_(detail.what)}."])
+    what = blocks.Paragraph([blocks.strong(_(detail.title)), f": {_(detail.say_what(us=measures.is_us()))}."])
     return blocks.Box([*drawing, what, fixings], "detail")
 
 
