@@ -78,7 +78,8 @@ def test_a_code_is_the_matrix_of_its_text():
     assert "<title>C-1 | Archive | L-bracket &amp; straps | Café</title>" in drawn
     dark = set()
     x = y = 0.0
-    for step, values in re.findall(r"([Mmh])(-?[\d.]+(?: ?-?[\d.]+)?)", re.search(r' d="([^"]+)"', drawn)[1]):
+    (path,) = re.findall(r' d="([^"]+)"', drawn)
+    for step, values in re.findall(r"([Mmh])(-?[\d.]+(?: ?-?[\d.]+)?)", path):
         numbers = [float(one) for one in re.findall(r"-?\d*\.?\d+", values)]
         if step == "h":
             dark |= {(int(x) + at - 4, int(y) - 4) for at in range(int(numbers[0]))}

@@ -1,6 +1,7 @@
 """The built-in types of furniture: sizes that make sense, sources that can be cited, names of their own."""
 
 import re
+from typing import Any
 
 import pytest
 
@@ -90,9 +91,9 @@ def test_an_unknown_way_to_fix_names_its_cell_and_the_choices(tmp_path):
 
 def test_words_for_castors_only_ask_where_nothing_else_tells(tmp_path):
     header = ["Item", "Floor", "Breadth [cm]", "Height [cm]", "Type", "Mobile", "Notes"]
-    rows = [["A", None, "On castors"], ["A", "no", "On castors"], ["Crash cart on castors", None, "Trolley"],
+    rows: list[list[Any]] = [["A", None, "On castors"], ["A", "no", "On castors"], ["Crash cart on castors", None, "Trolley"],
             ["Linen cart", None, None], ["A", None, "carts to the left? no: see A1"], ["A", None, None]]  # fmt: skip
-    items = [header, *([f"P{at}", "1", 60, 100, *row] for at, row in enumerate(rows))]
+    items: list[list[Any]] = [header, *([f"P{at}", "1", 60, 100, *row] for at, row in enumerate(rows))]
     inventory = read_inventory(write(tmp_path, items))
     found = {one.cell: one for one in inventory.problems if "castors" in str(one.message)}
     assert found.keys() == {"G2", "E5", "G6"}

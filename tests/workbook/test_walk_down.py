@@ -33,7 +33,7 @@ def test_its_pages_are_printed_one_a_room_and_have_the_labels_of_items(tmp_path,
     boxes = [row[6] for row in rows if str(row[6]).startswith(BOX)]
     assert len(boxes) == PAGES * LINES
     assert boxes[0].count(BOX) == 4
-    types = [row[0].value for row in book.worksheets[6].iter_rows(min_row=2, max_col=1) if row[0].value]
+    types = [str(row[0].value) for row in book.worksheets[6].iter_rows(min_row=2, max_col=1) if row[0].value]
     listed = {str(text).partition("  ")[2]: text for row in rows for text in row if str(text)[:1].isdigit()}
     assert [int(listed[name].split()[0]) for name in types] == list(range(1, len(types) + 1))
 
