@@ -55,7 +55,7 @@ def test_page_one_says_the_consequence_first_and_what_the_first_phase_takes_away
     assert f"Fixing {first.pieces} pieces in {first.places} place" in text
     assert f"takes {share:.0f} % of the falls away" in text
     assert "1 piece stands on castors" in text
-    assert f"{total.free} loose pieces" in text
+    assert f"of {total.free} free-standing pieces" in text
     for name in ("B. Engineer", "Signature", "Status: Simulated", "A: now"):
         assert name in text
 
